@@ -20,8 +20,8 @@ const COUNTS: [u32; 3] = [1_000, 10_000, 100_000];
 fn emitter(count: u32) -> (Emitter, f64) {
     let emitter = Emitter { rate: count as f32, duration: 1.0, lifetime: 100.0, ..Emitter::default() };
     // They stay where the camera of `column` sees them.
-    let place = Vec3::new(-3.0, 1.5, 0.5);
-    let still = Emitter { position: place, velocity: Vec3::ZERO, buoyancy: 0.0, extent: Vec3::ONE, ..emitter };
+    let source = Vec3::new(-3.0, 1.5, 0.5);
+    let still = Emitter { position: source, velocity: Vec3::ZERO, buoyancy: 0.0, extent: Vec3::ONE, ..emitter };
     (still, 10.0)
 }
 
@@ -53,8 +53,8 @@ fn prepare(criterion: &mut Criterion) {
             // Small sprites keep the GPU work short, so that it does not delay the next `prepare`.
             settings.sprite.size = 0.02;
             let mut renderer = Renderer::new(&context, &RendererDescriptor::default()).unwrap();
-            let pictures = haze_preset::MaterialSources::default().load(haze_preset::ImageSource::BuiltIn).unwrap();
-            let material = context.create_material(&pictures).unwrap();
+            let images = haze_preset::MaterialSources::default().load(haze_preset::ImageSource::BuiltIn).unwrap();
+            let material = context.create_material(&images).unwrap();
             let (emitter, time) = emitter(count);
             let mut particles = Vec::new();
             emitter.evaluate(time, &mut particles);

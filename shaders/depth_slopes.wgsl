@@ -42,7 +42,7 @@ fn texels(
     }
     workgroupBarrier();
     if index < 4u {
-        textureStore(written_cells, place_of_four(workgroup.xy, index), vec4f(f32(atomicLoad(&has_slope[index]))));
+        textureStore(written_cells, quad_position(workgroup.xy, index), vec4f(f32(atomicLoad(&has_slope[index]))));
     }
 }
 

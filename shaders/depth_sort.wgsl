@@ -1,6 +1,6 @@
 // depth_sort
 // Sorts a host's particles back to front, for the paths that blend: computes the sort keys before the sort, and moves
-// each particle to its place after it.
+// each particle to its position after it.
 //
 // Reads   particles; after the sort, the sorted particle indices.
 // Writes  keys and particle indices; after the sort, sorted particles.
@@ -32,12 +32,12 @@ fn depth_keys(@builtin(global_invocation_id) invocation: vec3u) {
 
 @compute @workgroup_size(64)
 fn gather_particles(@builtin(global_invocation_id) invocation: vec3u) {
-    let place = invocation.x;
-    if place >= tiles.count {
+    let position = invocation.x;
+    if position >= tiles.count {
         return;
     }
-    let at = tiles.first + PARTICLE_VECTORS * indices[place];
+    let at = tiles.first + PARTICLE_VECTORS * indices[position];
     for (var i = 0u; i < PARTICLE_VECTORS; i++) {
-        sorted_particles[PARTICLE_VECTORS * place + i] = particles[at + i];
+        sorted_particles[PARTICLE_VECTORS * position + i] = particles[at + i];
     }
 }

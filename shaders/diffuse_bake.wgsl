@@ -31,10 +31,10 @@ fn vertex(@builtin(vertex_index) index: u32) -> BakeVertex {
 @fragment
 fn fragment(in: BakeVertex) -> @location(0) vec4f {
     // First and last texel centers lie on -1 and 1.
-    let place = floor(in.position.xy) / (BAKE_SIZE - 1.0) * 2.0 - 1.0;
-    var normal = motif_normal(place);
+    let position = floor(in.position.xy) / (BAKE_SIZE - 1.0) * 2.0 - 1.0;
+    var normal = motif_normal(position);
     if !MOTIF {
-        normal = normalize(cube_direction(i32(in.face), place));
+        normal = normalize(cube_direction(i32(in.face), position));
     }
     // Baked by normal only, with the coverage of thick smoke.
     let unshaded = shade_of_sprites(vec3f(0.0));

@@ -47,7 +47,7 @@ fn texels(
     }
     workgroupBarrier();
     if index < 4u {
-        textureStore(written_cells, place_of_four(workgroup.xy, index), vec4f(f32(atomicLoad(&has_smoke[index]))));
+        textureStore(written_cells, quad_position(workgroup.xy, index), vec4f(f32(atomicLoad(&has_smoke[index]))));
     }
     if all(workgroup.xy == vec2u(0u)) {
         for (var light = index; light < system.light_count; light += 64u) {

@@ -1,4 +1,4 @@
-// screen_shadow: darkens the host's lit picture by the shadow of the smoke, for hosts whose shaders do not read it.
+// screen_shadow: darkens the host's lit image by the shadow of the smoke, for hosts whose shaders do not read it.
 // Reads   scene depth, lights, shadow maps of the three brightest lights, optical depths towards the lights, shadow ramp.
 // Writes  the host's color target.
 // Blend   DST, ZERO (multiply).
@@ -41,13 +41,13 @@ fn scene_point(pixel: vec2i) -> vec3f {
     return view_position(ray, depth, view.orthographic);
 }
 
-// Share of a light that reaches a point past the scene.
-fn scene_share(slot: f32, world: vec3f) -> f32 {
+// Fraction of a light that reaches a point past the scene.
+fn scene_fraction(slot: f32, world: vec3f) -> f32 {
     if slot < 0.5 || slot > 3.5 {
         return 1.0;
     }
-    let place = (world - haze_scene_shadow.origin) * haze_scene_shadow.cells_per_metre;
-    return map_visibility(u32(slot) - 1u, place);
+    let position = (world - haze_scene_shadow.origin) * haze_scene_shadow.cells_per_metre;
+    return map_visibility(u32(slot) - 1u, position);
 }
 
 @fragment
@@ -76,9 +76,9 @@ fn fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
         if facing <= 0.0 {
             continue;
         }
-        let arriving = lights[i].color * (facing * scene_share(lights[i].shadow_slot, above));
+        let arriving = lights[i].color * (facing * scene_fraction(lights[i].shadow_slot, above));
         full += arriving;
         shaded += arriving * haze_transmittance(world, i);
     }
-    return vec4f(share_of_light(full, shaded), 1.0);
+    return vec4f(fraction_of_light(full, shaded), 1.0);
 }

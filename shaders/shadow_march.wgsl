@@ -32,8 +32,8 @@ fn copy_density(@builtin(global_invocation_id) id: vec3u) {
     textureStore(written, id, vec4f(depth, 0.0, 0.0, 0.0));
 }
 
-fn sample_density(place: vec3f) -> f32 {
-    let inside = clamp(place + 1.0, vec3f(0.5), march.size + 1.5);
+fn sample_density(position: vec3f) -> f32 {
+    let inside = clamp(position + 1.0, vec3f(0.5), march.size + 1.5);
     return textureSampleLevel(density_texture, linear_sampler, inside / vec3f(textureDimensions(density_texture)), 0.0).r;
 }
 
@@ -47,13 +47,13 @@ var<workgroup> found: array<array<vec2f, 64>, LIGHTS_PER_BLOCK>;
 // ground two or three of the shorter rays. The blocks follow each other along z: the lights, then, on GPUs, sky and ground.
 @compute @workgroup_size(4, 4, 12)
 fn march_cells(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation_id) local: vec3u) {
-    let place = vec3u(local.xy, local.z % SIDE);
+    let position = vec3u(local.xy, local.z % SIDE);
     let ray = local.z / SIDE;
     let workgroups = (u32(march.size.z) + SIDE - 1u) / SIDE;
     let block = workgroup.z / workgroups;
     let is_light = block < march.light_blocks;
-    let cell = vec3u(workgroup.xy, workgroup.z % workgroups) * SIDE + place;
-    let index = (place.z * SIDE + place.y) * SIDE + place.x;
+    let cell = vec3u(workgroup.xy, workgroup.z % workgroups) * SIDE + position;
+    let index = (position.z * SIDE + position.y) * SIDE + position.x;
     if is_light {
         found[ray][index].x = optical_depth_of_light(cell, block, ray);
     } else {

@@ -20,9 +20,9 @@ fn load_density(cell: vec3i) -> f32 {
 }
 
 // Between the centers of eight cells.
-fn sample_density(place: vec3f) -> f32 {
-    let low = floor(place - 0.5);
-    let high_weight = place - 0.5 - low;
+fn sample_density(position: vec3f) -> f32 {
+    let low = floor(position - 0.5);
+    let high_weight = position - 0.5 - low;
     let low_weight = 1.0 - high_weight;
     var sum = 0.0;
     for (var corner = 0; corner < 8; corner++) {

@@ -1,5 +1,6 @@
 // shadow_visibility
-// Looks up a host's shadow maps at the cells of the density grid: the share of each cell that a light reaches past the scene.
+// Looks up a host's shadow maps at the cells of the density grid: the fraction of each cell that a light reaches past the
+// scene.
 //
 // Reads   shadow maps of the lights of a block.
 // Writes  visibility of the lights, in a block of the volume.
@@ -17,11 +18,11 @@ var<workgroup> octants: array<vec3f, 64>;
 fn look_up_cells(@builtin(global_invocation_id) octant: vec3u, @builtin(local_invocation_id) local: vec3u) {
     let side = vec3u(1u, 2u, 4u);
     let first = 8u * dot(local / 2u, side);
-    let place = dot(local % 2u, side);
-    octants[first + place] = octant_visibility(octant);
+    let position = dot(local % 2u, side);
+    octants[first + position] = octant_visibility(octant);
     workgroupBarrier();
     let cell = octant / 2u;
-    if place != 0u || any(cell >= vec3u(visibility.size)) {
+    if position != 0u || any(cell >= vec3u(visibility.size)) {
         return;
     }
     var visible = vec3f(0.0);

@@ -7,7 +7,7 @@
 #import "lib/shadow_map_lookup.wgsl"
 #import "lib/volume_slice.wgsl"
 
-// Share of a cell that each light reaches: the mean of its octants.
+// Fraction of a cell that each light reaches: the mean of its octants.
 fn cell_visibility(cell: vec3u) -> vec3f {
     var visible = vec3f(0.0);
     for (var i = 0u; i < 8u; i++) {

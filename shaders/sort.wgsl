@@ -34,7 +34,7 @@ const ROUNDS: u32 = 4u;
 var<workgroup> digit_counts: array<atomic<u32>, DIGITS>;
 // One bit for every invocation whose key has the digit, 32 per word.
 var<workgroup> digit_bits: array<atomic<u32>, 2048>;
-var<workgroup> next_places: array<u32, DIGITS>;
+var<workgroup> next_positions: array<u32, DIGITS>;
 
 fn digit_of(key: u32) -> u32 {
     return (key >> SHIFT) & (DIGITS - 1u);
@@ -90,7 +90,7 @@ fn total_and_before(digit: u32, block: u32) -> vec2u {
 @compute @workgroup_size(256)
 fn scatter(@builtin(local_invocation_index) local: u32, @builtin(workgroup_id) block: vec3u) {
     let counted = total_and_before(local, block.x);
-    next_places[local] = inclusive_sum(local, counted.x) - counted.x + counted.y;
+    next_positions[local] = inclusive_sum(local, counted.x) - counted.x + counted.y;
     let word = local / 32u;
     let bit = local % 32u;
     for (var round = 0u; round < ROUNDS; round++) {
@@ -117,13 +117,13 @@ fn scatter(@builtin(local_invocation_index) local: u32, @builtin(workgroup_id) b
             rank += countOneBits(held & in_front);
             all += countOneBits(held);
         }
-        let place = next_places[digit] + rank;
+        let position = next_positions[digit] + rank;
         workgroupBarrier();
         if is_inside {
-            sorted_keys[place] = key;
-            sorted_indices[place] = indices[at];
+            sorted_keys[position] = key;
+            sorted_indices[position] = indices[at];
             if rank + 1u == all {
-                next_places[digit] = place + 1u;
+                next_positions[digit] = position + 1u;
             }
         }
     }
@@ -137,7 +137,7 @@ const COUNTERS: u32 = 32u;
 // Number of keys that come before each key of the workgroup.
 var<workgroup> ranks: array<atomic<u32>, RANKED_KEYS>;
 
-// Moves every key to its place in one dispatch, for few keys: each is compared with all.
+// Moves every key to its position in one dispatch, for few keys: each is compared with all.
 @compute @workgroup_size(256)
 fn rank(@builtin(local_invocation_index) local: u32, @builtin(workgroup_id) block: vec3u) {
     let ranked = local / COUNTERS;
@@ -155,8 +155,8 @@ fn rank(@builtin(local_invocation_index) local: u32, @builtin(workgroup_id) bloc
     atomicAdd(&ranks[ranked], before);
     workgroupBarrier();
     if local % COUNTERS == 0u && at < tiles.count {
-        let place = atomicLoad(&ranks[ranked]);
-        sorted_keys[place] = key;
-        sorted_indices[place] = indices[at];
+        let position = atomicLoad(&ranks[ranked]);
+        sorted_keys[position] = key;
+        sorted_indices[position] = indices[at];
     }
 }

@@ -42,7 +42,7 @@ const OPAQUE: f32 = 0.0009765625;
 // A texel, and its accumulated values so far.
 struct Texel {
     // Position in the target, texels.
-    place: vec2f,
+    position: vec2f,
     ray: vec2f,
     scene: f32,
     // If the front of a sprite is beyond this view depth, it and all later sprites of the list are hidden.
@@ -54,12 +54,12 @@ struct Texel {
     transmittance: f32,
 }
 
-fn init_texel(place: vec2u) -> Texel {
+fn init_texel(position: vec2u) -> Texel {
     var texel: Texel;
-    texel.place = vec2f(place) + 0.5;
-    texel.ray = ray_through_texel(texel.place);
+    texel.position = vec2f(position) + 0.5;
+    texel.ray = ray_through_texel(texel.position);
     texel.transmittance = 1.0;
-    texel.scene = tested_view_depth(tested_depth, place);
+    texel.scene = tested_view_depth(tested_depth, position);
     texel.end = texel.scene + system.show_through_distance + tiles.occlusion_margin;
     return texel;
 }
@@ -74,7 +74,7 @@ fn accumulate_sprite(
     is_touched: bool,
     is_cover: bool,
 ) -> Texel {
-    var in = fragment_of(sprite, texel.place, texel.ray, uv);
+    var in = fragment_of(sprite, texel.position, texel.ray, uv);
     if STRETCH {
         in.stretch = unpack2x16snorm(values.stretch);
     }
@@ -109,17 +109,17 @@ fn is_opaque_or_occluded(texel: Texel, front: f32) -> bool {
     return is_opaque(texel) || front > texel.end;
 }
 
-fn write_texel(place: vec2u, texel: Texel) {
+fn write_texel(position: vec2u, texel: Texel) {
     let slots = slots_from_attachments(vec4f(texel.normals, 1.0 - texel.transmittance), texel.attachments);
-    textureStore(texture_0, place, slots[0]);
+    textureStore(texture_0, position, slots[0]);
     if ATTACHMENT_COUNT > 1u {
-        textureStore(texture_1, place, slots[1]);
+        textureStore(texture_1, position, slots[1]);
     }
     if ATTACHMENT_COUNT > 2u {
-        textureStore(texture_2, place, slots[2]);
+        textureStore(texture_2, position, slots[2]);
     }
     if ATTACHMENT_COUNT > 3u {
-        textureStore(texture_3, place, slots[3]);
+        textureStore(texture_3, position, slots[3]);
     }
 }
 
@@ -157,7 +157,7 @@ var<workgroup> fronts: array<f32, FINE_SPLIT>;
 var<workgroup> farthest: atomic<u32>;
 // The same of the nearest one, inverted.
 var<workgroup> nearest: atomic<u32>;
-// Texels of one part, as the targets' textures. The amount's place has the transmittance.
+// Texels of one part, as the targets' textures. The amount's position has the transmittance.
 var<workgroup> behind: array<array<vec4f, MAX_TARGET_ATTACHMENTS>, 64>;
 
 // Texels of an invocation: a above b. If QUADS, also c above d, to their right.
@@ -177,10 +177,10 @@ fn cooperative(@builtin(local_invocation_id) local: vec3u, @builtin(workgroup_id
 @compute @workgroup_size(8, 4, 4)
 fn quads(@builtin(local_invocation_id) local: vec3u, @builtin(workgroup_id) workgroup: vec3u) {
     let low = workgroup.xy * QUAD_TILE;
-    let place = first_texel(low, local);
+    let position = first_texel(low, local);
     let texels = traverse_part(low, QUAD_TILE, local, 1u);
-    write_pair(place, texels);
-    write_pair(place + vec2u(1u, 0u), Texels(texels.c, texels.d, texels.c, texels.d));
+    write_pair(position, texels);
+    write_pair(position + vec2u(1u, 0u), Texels(texels.c, texels.d, texels.c, texels.d));
 }
 
 @compute @workgroup_size(8, 8, SPLIT)
@@ -246,11 +246,11 @@ fn with_behind(texel: Texel, slots: array<vec4f, MAX_TARGET_ATTACHMENTS>) -> Tex
     return next;
 }
 
-fn write_pair(place: vec2u, texels: Texels) {
+fn write_pair(position: vec2u, texels: Texels) {
     let size = vec2u(system.target_size);
-    let below = place + vec2u(0u, 1u);
-    if all(place < size) {
-        write_texel(place, texels.a);
+    let below = position + vec2u(0u, 1u);
+    if all(position < size) {
+        write_texel(position, texels.a);
     }
     if all(below < size) {
         write_texel(below, texels.b);
@@ -259,18 +259,18 @@ fn write_pair(place: vec2u, texels: Texels) {
 
 // Traverses a part of a tile's list: that of the invocation, of so many parts. All invocations of a workgroup call it.
 // `low`: first texel of the tile.
-fn traverse_part(low: vec2u, tile: vec2u, local_place: vec3u, parts: u32) -> Texels {
+fn traverse_part(low: vec2u, tile: vec2u, local_position: vec3u, parts: u32) -> Texels {
     let last_texel = vec2u(system.target_size) - 1u;
-    let part = select(local_place.z, 0u, QUADS);
-    let local = select(0u, local_place.z * 32u, QUADS) + local_place.y * 8u + local_place.x;
-    let place = first_texel(low, local_place);
-    var a = init_texel(min(place, last_texel));
-    var b = init_texel(min(place + vec2u(0u, 1u), last_texel));
+    let part = select(local_position.z, 0u, QUADS);
+    let local = select(0u, local_position.z * 32u, QUADS) + local_position.y * 8u + local_position.x;
+    let position = first_texel(low, local_position);
+    var a = init_texel(min(position, last_texel));
+    var b = init_texel(min(position + vec2u(0u, 1u), last_texel));
     var c = a;
     var d = b;
     if QUADS {
-        c = init_texel(min(place + vec2u(1u, 0u), last_texel));
-        d = init_texel(min(place + vec2u(1u, 1u), last_texel));
+        c = init_texel(min(position + vec2u(1u, 0u), last_texel));
+        d = init_texel(min(position + vec2u(1u, 1u), last_texel));
         let scene = min(min(a.scene, b.scene), min(c.scene, d.scene));
         atomicMax(&nearest, ~bitcast<u32>(max(scene, 0.0)));
     }
@@ -281,14 +281,14 @@ fn traverse_part(low: vec2u, tile: vec2u, local_place: vec3u, parts: u32) -> Tex
     let entries = min(list.y * tiles.loops, 0x7fffffffu);
     // Entries of each part, and of each part of a batch.
     let length = (entries + parts - 1u) / parts;
-    let share = BATCH / parts;
+    let fraction = BATCH / parts;
     let start = part * length;
     let stop = min(start + length, entries);
     let middle = vec2f(low) + 0.5 * vec2f(tile);
     workgroupBarrier();
     let begin = bitcast<f32>(~atomicLoad(&nearest));
     let end = bitcast<f32>(atomicLoad(&farthest)) + system.show_through_distance;
-    for (var first = 0u; first < length; first += share) {
+    for (var first = 0u; first < length; first += fraction) {
         if local == 0u && part == 0u {
             atomicStore(&touching[0], 0u);
             atomicStore(&touching[1], 0u);
@@ -305,7 +305,7 @@ fn traverse_part(low: vec2u, tile: vec2u, local_place: vec3u, parts: u32) -> Tex
         var sprite: TileSprite;
         var values: SpriteValues;
         var is_kept = false;
-        if local < share && start + first + local < stop {
+        if local < fraction && start + first + local < stop {
             // `debug.draw_count`: repeats the list.
             let index = sprite_index(list, (start + first + local) % list.y);
             if local == 0u {
@@ -329,7 +329,7 @@ fn traverse_part(low: vec2u, tile: vec2u, local_place: vec3u, parts: u32) -> Tex
                 }
             }
         }
-        let entry = part * share + local;
+        let entry = part * fraction + local;
         if is_kept {
             atomicOr(&touching[entry / 32u], 1u << (entry % 32u));
         }
@@ -346,11 +346,11 @@ fn traverse_part(low: vec2u, tile: vec2u, local_place: vec3u, parts: u32) -> Tex
             atomicStore(&unfinished, 0u);
         }
         workgroupBarrier();
-        let last = count_below(kept, (part + 1u) * share);
+        let last = count_below(kept, (part + 1u) * fraction);
         // llvmpipe's textureLoad takes the mip level of a lane that has left the loop. No lane leaves it under exact filtering,
         // which tests use.
         for (
-            var at = count_below(kept, part * share);
+            var at = count_below(kept, part * fraction);
             at < last && (EXACT_FILTERING || !are_opaque(a, b, c, d));
             at++
         ) {
@@ -361,7 +361,7 @@ fn traverse_part(low: vec2u, tile: vec2u, local_place: vec3u, parts: u32) -> Tex
             if has_values() {
                 values = batch_values[at];
             }
-            let in_a = uv_in_square(sprite, a.place);
+            let in_a = uv_in_square(sprite, a.position);
             let in_b = in_a + sprite.uv_from_texels.yw;
             let in_c = in_a + sprite.uv_from_texels.xz;
             let in_d = in_c + sprite.uv_from_texels.yw;
@@ -421,7 +421,7 @@ const STRIDE: u32 = 8u;
 var<workgroup> done_columns: array<atomic<u32>, 8>;
 
 @compute @workgroup_size(8, 8)
-fn per_invocation(@builtin(global_invocation_id) invocation: vec3u, @builtin(local_invocation_id) local_place: vec3u) {
+fn per_invocation(@builtin(global_invocation_id) invocation: vec3u, @builtin(local_invocation_id) local_position: vec3u) {
     let low = invocation.xy * vec2u(1u, PER_INVOCATION_TILE.y);
     let size = vec2u(system.target_size);
     if any(low >= size) {
@@ -459,7 +459,7 @@ fn per_invocation(@builtin(global_invocation_id) invocation: vec3u, @builtin(loc
             let sprite = sprites[index];
             let values = values_of(index);
             bits &= bits - 1u;
-            let in_a = uv_in_square(sprite, a.place);
+            let in_a = uv_in_square(sprite, a.position);
             let in_b = in_a + sprite.uv_from_texels.yw;
             let in_c = in_b + sprite.uv_from_texels.yw;
             let in_d = in_c + sprite.uv_from_texels.yw;
@@ -473,9 +473,9 @@ fn per_invocation(@builtin(global_invocation_id) invocation: vec3u, @builtin(loc
             let above = is_opaque_or_occluded(a, last_front) && is_opaque_or_occluded(b, last_front);
             if !is_column_done && above && is_opaque_or_occluded(c, last_front) && is_opaque_or_occluded(d, last_front) {
                 is_column_done = true;
-                atomicAdd(&done_columns[local_place.y], 1u);
+                atomicAdd(&done_columns[local_position.y], 1u);
             }
-            if atomicLoad(&done_columns[local_place.y]) == columns {
+            if atomicLoad(&done_columns[local_position.y]) == columns {
                 break;
             }
         }

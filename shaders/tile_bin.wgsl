@@ -39,12 +39,12 @@ fn count_sprites(@builtin(global_invocation_id) invocation: vec3u) {
 }
 
 // Allocates a bin's list of `length` sprites and `more` further words. Lists are in no particular order, but the
-// content of each is deterministic. A list that is longer than its share of a 32-bit count is dropped, so that the sum
+// content of each is deterministic. A list that is longer than its fraction of a 32-bit count is dropped, so that the sum
 // cannot wrap. (Adding only as far as there is room, by compare-exchange, takes a millisecond if thousands of bins
 // contend.)
 fn bin_list(length: u32, more: u32) -> vec2u {
-    let share = 0xffffffffu / (tiles.columns * tiles.rows);
-    let is_counted = length <= share && more <= share - length;
+    let fraction = 0xffffffffu / (tiles.columns * tiles.rows);
+    let is_counted = length <= fraction && more <= fraction - length;
     let size = select(0u, length + more, is_counted);
     let first = atomicAdd(&counters.entries, size);
     let fits = is_counted && list_fits(first, size, tiles.capacity);
@@ -112,11 +112,11 @@ fn build_lists_in_one_dispatch(@builtin(local_invocation_index) local: u32, @bui
     if workgroupUniformLoad(&begin) == NO_LIST {
         return;
     }
-    var place = begin + sum - count;
+    var position = begin + sum - count;
     for (var word = local * each; word < local * each + each; word++) {
         for (var bits = atomicLoad(&touching[word]); bits != 0u; bits &= bits - 1u) {
-            lists[place] = indices[word * 32u + firstTrailingBit(bits)];
-            place++;
+            lists[position] = indices[word * 32u + firstTrailingBit(bits)];
+            position++;
         }
     }
 }
@@ -186,9 +186,9 @@ fn fill_per_run(@builtin(global_invocation_id) invocation: vec3u) {
                 let bin = row * tiles.columns + column;
                 let list = bins[bin].x;
                 if list != NO_LIST {
-                    let place = counts[bin * tiles.runs + run];
-                    lists[list + place] = index;
-                    counts[bin * tiles.runs + run] = place + 1u;
+                    let position = counts[bin * tiles.runs + run];
+                    lists[list + position] = index;
+                    counts[bin * tiles.runs + run] = position + 1u;
                 }
             }
         }
@@ -207,12 +207,12 @@ fn fill(@builtin(global_invocation_id) invocation: vec3u) {
         return;
     }
     let low = low_of_bin(bin);
-    var place = list + counts[bin * tiles.runs + run];
+    var position = list + counts[bin * tiles.runs + run];
     let end = min(run * RUN + RUN, counters.visible);
     for (var at = run * RUN; at < end; at++) {
         if rects_meet(sorted_rects[at], low, low + tiles.bin_side) {
-            lists[place] = indices[at];
-            place++;
+            lists[position] = indices[at];
+            position++;
         }
     }
 }

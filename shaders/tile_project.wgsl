@@ -73,9 +73,9 @@ fn project(@builtin(global_invocation_id) invocation: vec3u) {
         // Filled part of the square: its center, and half its sides.
         let reach = trimmed_extent(frames, lod);
         let texels = radius / metres;
-        let place = 0.5 * (reach.zw - reach.xy);
+        let position = 0.5 * (reach.zw - reach.xy);
         let half_size = 0.5 * (reach.xy + reach.zw);
-        let filled = middle + (across * place.x + up * place.y) * texels;
+        let filled = middle + (across * position.x + up * position.y) * texels;
         let extent = (abs(across) * half_size.x + abs(up) * half_size.y) * abs(texels);
         low = filled - extent;
         high = filled + extent;

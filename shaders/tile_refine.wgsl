@@ -77,8 +77,8 @@ fn visible_parts(index: u32, low: vec2u, part: vec2u) -> u32 {
 // Returns the approximate amount of a sprite at a texel: puffs are thick in the center and thin out.
 fn approximate_amount(index: u32, texel: vec2f) -> f32 {
     let sprite = sprites[index];
-    let place = 2.0 * uv_in_square(sprite, texel) - 1.0;
-    let thickness = max(1.0 - dot(place, place), 0.0);
+    let position = 2.0 * uv_in_square(sprite, texel) - 1.0;
+    let thickness = max(1.0 - dot(position, position), 0.0);
     return sprite.amount * thickness * thickness;
 }
 

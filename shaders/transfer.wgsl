@@ -67,7 +67,7 @@ fn fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
         return vec4f(surface.normal * 0.5 + 0.5, 1.0) * covered;
     }
     if DEBUG_VIEW == DEBUG_VIEW_SHADOW {
-        return vec4f(shares_of_lights(surface.shade.optical_depths, surface.shade.visible), 1.0) * covered;
+        return vec4f(fractions_of_lights(surface.shade.optical_depths, surface.shade.visible), 1.0) * covered;
     }
 
     var light = vec3f(0.0);

@@ -7,7 +7,7 @@
 
 #import "lib/lit_pixel.wgsl"
 
-// True: places without slopes are filtered by the hardware; depth_slopes has computed slope_cells.
+// True: positions without slopes are filtered by the hardware; depth_slopes has computed slope_cells.
 override SLOPE_CELLS: bool = false;
 
 @group(3) @binding(6) var written: texture_storage_2d<rgba16float, write>;

@@ -20,7 +20,7 @@
 //!                      depth_slopes       lit smoke ─► its slope over depth, for upsampling
 //!                      mark_cells         lit smoke, slopes ─► cells that hold any, if they are drawn
 //!                      upsample_lit       lit smoke ─► pixels, where a GPU computes far faster than it draws
-//! Renderer::render     screen_shadow      darkens the host's picture, if it calls render_scene_shadow
+//! Renderer::render     screen_shadow      darkens the host's image, if it calls render_scene_shadow
 //!   (host's pass)      transfer           the system's bounding box: decode, light, upsample, blend on the scene
 //!                                         (transfer_lit: the same with lit smoke)
 //!                      specular_scatter   the glow of lights behind the smoke

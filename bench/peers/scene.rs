@@ -1,7 +1,7 @@
 //! Scene and measurement that all peers share, so that only the particles differ. Compiled into each peer, with its version
 //! of Bevy.
 //!
-//! Squares that face the camera, larger than the picture: each is one layer of fragments over every pixel. Each has an amount
+//! Squares that face the camera, larger than the image: each is one layer of fragments over every pixel. Each has an amount
 //! of 0.1 or less and a normal map. Behind them are opaque boxes; the target holds half floats. Lamps light all of it,
 //! without shadow.
 
@@ -31,7 +31,7 @@ pub const LAYERS: [u32; 2] = [16, 64];
 pub const LIGHTS: [u32; 3] = [1, 8, 16];
 /// Texels on a side of the sprite.
 pub const SPRITE_SIZE: u32 = 128;
-/// Half the side of each square, metres. At the distance of the farthest, 8 m, a picture of 16 to 9 is 11.8 m wide.
+/// Half the side of each square, metres. At the distance of the farthest, 8 m, an image of 16 to 9 is 11.8 m wide.
 pub const RADIUS: f32 = 6.2;
 /// Frames after a change, until timestamps of the last case have been read and pipelines compiled.
 const SETTLE: u32 = 12;
@@ -196,8 +196,8 @@ pub fn measure(
     let mut medians = Vec::new();
     for (case, times) in cases.iter().zip(&mut times) {
         times.sort_by(f64::total_cmp);
-        let at = |share: f64| {
-            times.get((share * times.len().saturating_sub(1) as f64) as usize).copied().unwrap_or(f64::NAN)
+        let at = |fraction: f64| {
+            times.get((fraction * times.len().saturating_sub(1) as f64) as usize).copied().unwrap_or(f64::NAN)
         };
         let Case { variant, layers, lights } = case;
         let quartiles = format!("{:.4} to {:.4}", at(0.25), at(0.75));

@@ -64,8 +64,8 @@ fn sample_target(target_texture: texture_2d<f32>, pixel: vec2f) -> vec4f {
     for (var i = 0; i < count; i++) {
         let offset = vec2i(i % 4, i / 4) - 1;
         let at = clamped_texel(base + offset);
-        let place = vec3f(vec2f(offset) - fraction, guide(at) - depth);
-        fit = add_texel(fit, place, guided_weight(place, depth), textureLoad(target_texture, at, 0));
+        let position = vec3f(vec2f(offset) - fraction, guide(at) - depth);
+        fit = add_texel(fit, position, guided_weight(position, depth), textureLoad(target_texture, at, 0));
     }
     if count == 0 {
         return value;

@@ -9,6 +9,6 @@ fn quad_cell(local: vec2u) -> u32 {
 }
 
 // Cell of a workgroup by its index among the four.
-fn place_of_four(workgroup: vec2u, index: u32) -> vec2u {
+fn quad_position(workgroup: vec2u, index: u32) -> vec2u {
     return workgroup * 2u + vec2u(index & 1u, index >> 1u);
 }

@@ -1,4 +1,4 @@
-// Depth of smoke at a pixel, from accumulated moments. Depths are shares of a system's range of view depths.
+// Depth of smoke at a pixel, from accumulated moments. Depths are fractions of a system's range of view depths.
 
 // Number of samples that represent the smoke at a pixel.
 const DEPTH_SAMPLES: u32 = 4u;

@@ -18,7 +18,7 @@ override AMBIENT: bool = false;
 struct Shade {
     // Of other smoke, towards the lights of the first block.
     optical_depths: vec3f,
-    // Share of each of these lights that comes past the scene.
+    // Fraction of each of these lights that comes past the scene.
     visible: vec3f,
     // To sky and ground.
     openness: vec2f,
@@ -55,7 +55,7 @@ fn shade_on_ray(optical_depths: vec3f, ray: vec2f, moments: vec2f) -> Shade {
     if SHADOW_BLOCKS > 1u {
         shade.ray = ray;
         shade.moments = moments;
-        shade.own = own_at_mean_depth(sample_volume(0.0, mean_place(ray, moments)), optical_depths);
+        shade.own = own_at_mean_depth(sample_volume(0.0, mean_cell(ray, moments)), optical_depths);
     }
     return shade;
 }
@@ -74,12 +74,12 @@ fn shade_of_block(slot: f32, shade: Shade, last: BlockShade) -> BlockShade {
     if block == 0.0 {
         return first_block(shade);
     }
-    let in_grid = sample_volume(block, mean_place(shade.ray, shade.moments));
+    let in_grid = sample_volume(block, mean_cell(shade.ray, shade.moments));
     let visible = scene_visibility(block, shade.ray, shade.moments);
     return BlockShade(block, foreign_optical_depths(in_grid, shade.own), visible);
 }
 
-// Share of a light that comes past the scene and through the smoke before it.
+// Fraction of a light that comes past the scene and through the smoke before it.
 fn shadow_on_light(slot: f32, shade: BlockShade, to_light: vec3f, to_viewer: vec3f) -> vec3f {
     if !SHADOW || slot < 0.5 {
         return vec3f(1.0);
@@ -89,7 +89,7 @@ fn shadow_on_light(slot: f32, shade: BlockShade, to_light: vec3f, to_viewer: vec
     return through * select_slot(slot, shade.visible);
 }
 
-// Share of the light from a hemisphere that comes through the smoke.
+// Fraction of the light from a hemisphere that comes through the smoke.
 fn shadow_on_hemisphere(openness: f32) -> vec3f {
     if !SHADOW {
         return vec3f(1.0);

@@ -30,9 +30,9 @@ fn birth_offset(emitter: Emitter, random: vec3f) -> vec3f {
 
 // Seconds from the interval of the first birth to that of another.
 fn birth_delay(emitter: Emitter, number: u32) -> f32 {
-    let place = emitter.first_in_pulse + number;
-    let pulse = place / emitter.per_pulse;
-    let in_pulse = place - pulse * emitter.per_pulse;
+    let position = emitter.first_in_pulse + number;
+    let pulse = position / emitter.per_pulse;
+    let in_pulse = position - pulse * emitter.per_pulse;
     return f32(pulse) * emitter.period + f32(i32(in_pulse) - i32(emitter.first_in_pulse)) / emitter.rate;
 }
 
@@ -42,8 +42,8 @@ const GOLDEN: u32 = 2654435769u;
 // True if a birth happens. Those that do are spread evenly among all.
 fn is_born(emitter: Emitter, number: u32) -> bool {
     let in_pulse = (emitter.first_in_pulse + number) % emitter.per_pulse;
-    let share = curve_value(emitter.rate_curve, (f32(in_pulse) + 0.5) / f32(emitter.per_pulse));
-    return unit((emitter.first + number) * GOLDEN) < share;
+    let fraction = curve_value(emitter.rate_curve, (f32(in_pulse) + 0.5) / f32(emitter.per_pulse));
+    return unit((emitter.first + number) * GOLDEN) < fraction;
 }
 
 // Returns the rotation at birth, radians: any at a spread of 1, about upright at small ones.
@@ -55,7 +55,7 @@ fn rotation_at_birth(spread: f32, random: f32) -> f32 {
 fn emitted_particle(emitter: Emitter, number: u32) -> EmittedParticle {
     let index = emitter.first + number;
     let life = birth_random(index, 0u, emitter.seed);
-    let place = birth_random(index, 1u, emitter.seed);
+    let random_offset = birth_random(index, 1u, emitter.seed);
     let motion = birth_random(index, 2u, emitter.seed);
     let look = birth_random(index, 3u, emitter.seed);
     let color = birth_random(index, 4u, emitter.seed);
@@ -67,15 +67,15 @@ fn emitted_particle(emitter: Emitter, number: u32) -> EmittedParticle {
     }
     let age = seconds / lifetime;
 
-    let offset = birth_offset(emitter, place);
+    let offset = birth_offset(emitter, random_offset);
     let distance = length(offset);
     let outward = select(vec3f(0.0), offset / distance, distance > 0.0);
     let velocity = emitter.velocity + outward * emitter.burst + unit_sphere(motion) * (emitter.velocity_spread * life.z);
-    var size = select(1.0, emitter.small_size, color.z < emitter.small_share);
-    var share = 1.0;
+    var size = select(1.0, emitter.small_size, color.z < emitter.small_fraction);
+    var fraction = 1.0;
     if emitter.has_curves != 0u {
         size *= curve_value(emitter.size_curve, age);
-        share = curve_value(emitter.amount_curve, age);
+        fraction = curve_value(emitter.amount_curve, age);
     }
     let start = Flight(emitter.position + offset, velocity);
     let moved = paced_flight(emitter, start, pace_at(emitter, lifetime, seconds));
@@ -93,8 +93,8 @@ fn emitted_particle(emitter: Emitter, number: u32) -> EmittedParticle {
         vec4f(position, radius),
         vec4f(
             rotation_at_birth(emitter.rotation_spread, look.y) + emitter.spin * (2.0 * look.z - 1.0) * turned,
-            emitter.amount * share * fade_in * fade_out,
-            place.x * 256.0 + seconds * emitter.frame_rate,
+            emitter.amount * fraction * fade_in * fade_out,
+            random_offset.x * 256.0 + seconds * emitter.frame_rate,
             age,
         ),
         moved.velocity + carried.velocity,

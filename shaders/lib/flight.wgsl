@@ -46,7 +46,7 @@ struct Emitter {
     tint: vec3f,
     heat_spread: f32,
     other_tint: vec3f,
-    // Share of the speed that a particle keeps on the floor; 0 for no floor.
+    // Fraction of the speed that a particle keeps on the floor; 0 for no floor.
     bounce: f32,
     up: vec3f,
     // Height along `up`, world space.
@@ -60,15 +60,15 @@ struct Emitter {
     speed_curve: Curve,
     size_curve: Curve,
     amount_curve: Curve,
-    // Share of the births that happen, over a pulse.
+    // Fraction of the births that happen, over a pulse.
     rate_curve: Curve,
-    // Share of the radius by which a particle is moved up.
+    // Fraction of the radius by which a particle is moved up.
     anchor: f32,
-    // Share of a turn.
+    // Fraction of a turn.
     rotation_spread: f32,
     // 0 if all births happen.
     has_rate_curve: u32,
-    // Strength of each octave of the swirls, as a share of the one before.
+    // Strength of each octave of the swirls, as a fraction of the one before.
     swirl_detail: f32,
     // Velocity of the swirls as a whole.
     swirl_travel: vec3f,
@@ -93,8 +93,8 @@ struct Emitter {
     orbit_rate: f32,
     // 0 if nothing carries the particles beside their flight.
     has_flow: u32,
-    // Share of the particles that are small, and their radius as a share of the others'.
-    small_share: f32,
+    // Fraction of the particles that are small, and their radius as a fraction of the others'.
+    small_fraction: f32,
     small_size: f32,
     // Height above the floor below which smoke turns aside; 0 if it does not.
     floor_margin: f32,
@@ -161,8 +161,8 @@ fn bouncing_flight(emitter: Emitter, start: Flight, seconds: f32) -> Flight {
         var below = left;
         for (var step = 0u; step < IMPACT_STEPS; step++) {
             let middle = 0.5 * (above + below);
-            let place = flight(emitter, last, middle).position;
-            if dot(place, emitter.up) < emitter.floor {
+            let position = flight(emitter, last, middle).position;
+            if dot(position, emitter.up) < emitter.floor {
                 below = middle;
             } else {
                 above = middle;

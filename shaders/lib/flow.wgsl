@@ -29,9 +29,9 @@ fn swirl(emitter: Emitter, position: vec3f, later: f32) -> vec3f {
 const RING_SALT: u32 = 5u;
 // A ring takes in air and widens by so much of its way.
 const RING_GROWTH: f32 = 0.12;
-// Random variation of radius and speed, up and down, as a share, and of the axis, as a share of its length.
+// Random variation of radius and speed, up and down, as a fraction, and of the axis, as a fraction of its length.
 const RING_SPREAD: f32 = 0.3;
-// Share of the life after which a ring rolls at full speed.
+// Fraction of the life after which a ring rolls at full speed.
 const RING_ONSET: f32 = 0.1;
 
 // Velocity around a rolling ring that leaves the source at the time of its number and flies as a particle does: forward
@@ -62,10 +62,10 @@ fn ring(emitter: Emitter, position: vec3f, number: f32, later: f32) -> vec3f {
 // Velocity of the two rings between which a particle was born; `born` is the number of its birth among them.
 fn rings(emitter: Emitter, position: vec3f, born: f32, later: f32) -> vec3f {
     let last = floor(born);
-    let share = born - last;
+    let fraction = born - last;
     // Full for half of the way to either, and continuous where another pair begins.
-    return ring(emitter, position, last, later) * smoothstep_unit(2.0 - 2.0 * share)
-        + ring(emitter, position, last + 1.0, later) * smoothstep_unit(2.0 * share);
+    return ring(emitter, position, last, later) * smoothstep_unit(2.0 - 2.0 * fraction)
+        + ring(emitter, position, last + 1.0, later) * smoothstep_unit(2.0 * fraction);
 }
 
 // The part of a surface that is nearest to smoke which flows around it.
@@ -121,7 +121,7 @@ struct Flying {
 
 // Steps of the way through the flow, over a life.
 const FLOW_STEPS: u32 = 32u;
-// Share of the life over which the swirls take hold: smoke leaves the source smooth and breaks up later.
+// Fraction of the life over which the swirls take hold: smoke leaves the source smooth and breaks up later.
 const SWIRL_ONSET: f32 = 0.15;
 
 // Way of a particle through the flow, from the beginning of a step to its end: where it has been carried to, and the

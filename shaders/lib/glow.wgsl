@@ -14,7 +14,7 @@ struct Glow {
     color: vec3f,
 }
 
-// Share of a light's body that the scene leaves visible.
+// Fraction of a light's body that the scene leaves visible.
 fn light_visibility(pixel: vec2f, radius: f32, light_depth: f32) -> f32 {
     var visible = 0.0;
     for (var i = 0u; i < VISIBILITY_TAPS; i++) {

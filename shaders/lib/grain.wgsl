@@ -11,13 +11,13 @@ const GRAIN_DOWN: vec3f = vec3f(0.14178, 0.62548, -0.76725);
 // Density that half of the noise is above.
 const MIDDLE_DENSITY: f32 = 0.5;
 
-// Share of an octave that a target can show. `fineness`: texels of the noise per texel of the target.
-fn octave_share(fineness: f32) -> f32 {
+// Fraction of an octave that a target can show. `fineness`: texels of the noise per texel of the target.
+fn octave_fraction(fineness: f32) -> f32 {
     return saturate(1.5 / max(fineness, 1.0e-6) - 0.5);
 }
 
-// Noise at a position on a sprite: the tilt of the normal (xy, y up), and the density above the middle (z). `phase`: share of the
-// flipbook's loop that has passed. `tiles`: of the noise, across the sprite. `fineness`: of the first octave, as above.
+// Noise at a position on a sprite: the tilt of the normal (xy, y up), and the density above the middle (z). `phase`: fraction
+// of the flipbook's loop that has passed. `tiles`: of the noise, across the sprite. `fineness`: of the first octave, as above.
 fn sample_grain(
     noise: texture_3d<f32>,
     repeat_sampler: sampler,
@@ -29,17 +29,17 @@ fn sample_grain(
 ) -> vec3f {
     var sum = vec4f(0.0);
     var total = 0.0;
-    var place = (GRAIN_RIGHT * uv.x + GRAIN_DOWN * uv.y) * tiles + phase;
+    var position = (GRAIN_RIGHT * uv.x + GRAIN_DOWN * uv.y) * tiles + phase;
     var weight = 1.0;
     var fine = fineness;
     for (var octave = 0u; octave < octaves; octave++) {
-        let share = weight * octave_share(fine);
+        let fraction = weight * octave_fraction(fine);
         // On GPUs this saves the lookups of octaves that do not show.
-        if share > 0.0 {
-            sum += sample_noise_volume(noise, repeat_sampler, place) * share;
-            total += share;
+        if fraction > 0.0 {
+            sum += sample_noise_volume(noise, repeat_sampler, position) * fraction;
+            total += fraction;
         }
-        place *= 3.0;
+        position *= 3.0;
         fine *= 3.0;
         weight *= 0.5;
     }
@@ -59,9 +59,9 @@ fn eroded(amount: f32, density: f32, erosion: f32) -> f32 {
     return saturate((amount - threshold) / max(1.0 - threshold, 0.01));
 }
 
-// Share of a sprite's density that erosion keeps. `eroded_share`: the same at an erosion of 1.
-fn kept_share(eroded_share: f32, erosion: f32) -> f32 {
-    return 1.0 - (1.0 - eroded_share) * erosion;
+// Fraction of a sprite's density that erosion keeps. `eroded_fraction`: the same at an erosion of 1.
+fn kept_fraction(eroded_fraction: f32, erosion: f32) -> f32 {
+    return 1.0 - (1.0 - eroded_fraction) * erosion;
 }
 
 // Normal with a tilt, at most of unit length.

@@ -25,7 +25,7 @@ struct SceneShadow {
 @group(3) @binding(2) var haze_shadow_ramp: texture_2d<f32>;
 @group(3) @binding(3) var haze_linear_sampler: sampler;
 
-// Share of a light that reaches a point through the smoke, linear RGB: multiply the light's diffuse and specular parts.
+// Fraction of a light that reaches a point through the smoke, linear RGB: multiply the light's diffuse and specular parts.
 // `light`: index in FrameInput::lights. 1 for lights without shadow, and where there is no smoke before the light.
 fn haze_transmittance(world_position: vec3f, light: u32) -> vec3f {
     var slot = 0u;
@@ -36,15 +36,15 @@ fn haze_transmittance(world_position: vec3f, light: u32) -> vec3f {
         return vec3f(1.0);
     }
     let extent = haze_scene_shadow.extent;
-    let place = (world_position - haze_scene_shadow.origin) * haze_scene_shadow.cells_per_metre;
-    let entry = grid_entry(haze_scene_shadow.lights[slot], place, extent);
+    let position = (world_position - haze_scene_shadow.origin) * haze_scene_shadow.cells_per_metre;
+    let entry = grid_entry(haze_scene_shadow.lights[slot], position, extent);
     if entry.w < 0.5 {
         return vec3f(1.0);
     }
     // Three lights in each block of the volume, behind each other along z.
     let texels = vec3f(textureDimensions(haze_optical_depths));
-    let place_in_block = clamp(entry.xyz, vec3f(0.5), extent);
-    let at = (place_in_block + vec3f(0.0, 0.0, f32(slot / 3u) * texels.x)) / texels;
+    let position_in_block = clamp(entry.xyz, vec3f(0.5), extent);
+    let at = (position_in_block + vec3f(0.0, 0.0, f32(slot / 3u) * texels.x)) / texels;
     let optical_depth = textureSampleLevel(haze_optical_depths, haze_linear_sampler, at, 0.0)[slot % 3u];
     let coordinate = vec2f(saturate(1.0 - exp2(-optical_depth)), 1.0);
     let painted = sample_ramp_2d(haze_shadow_ramp, haze_linear_sampler, coordinate);

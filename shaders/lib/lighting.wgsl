@@ -91,18 +91,18 @@ fn soft_scatter_weight(amount: f32, scatter_amount: f32, scatter_smooth: f32) ->
     return x * x * (3.0 - 2.0 * x);
 }
 
-// Share of the scene that the smoke hides. (OTEE "Diffuse lighting", col.a)
+// Fraction of the scene that the smoke hides. (OTEE "Diffuse lighting", col.a)
 fn coverage(amount: f32, boost: f32) -> f32 {
     return saturate(amount * boost);
 }
 
-// Share that a color of a coverage or heat ramp stands for. It is the sRGB code of the color's luminance, so that a displayed
-// middle gray is half.
-fn painted_share(paint: vec3f) -> f32 {
+// Fraction that a color of a coverage or heat ramp stands for. It is the sRGB code of the color's luminance, so that a
+// displayed middle gray is half.
+fn painted_fraction(paint: vec3f) -> f32 {
     return srgb_from_linear(saturate(luminance(paint)));
 }
 
-// Share of the smoke's depth range that lies in front of a light: 0 before its near side, 1 behind its far side. (OTEE
+// Fraction of the smoke's depth range that lies in front of a light: 0 before its near side, 1 behind its far side. (OTEE
 // "Specular scattering": fade out the quad as it goes through the bounding box)
 fn specular_scatter_fade(light_depth: f32, smoke_near: f32, smoke_far: f32) -> f32 {
     return saturate((light_depth - smoke_near) / max(smoke_far - smoke_near, 1.0e-4));

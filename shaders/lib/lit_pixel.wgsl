@@ -16,8 +16,8 @@ override GLOWS: bool = false;
 fn lit_pixel(pixel: vec2f, has_slopes: bool, texel_size: vec2f, glowing: vec2u) -> vec4f {
     var lit: vec4f;
     if !has_slopes {
-        let place = filtered_place(pixel / f32(system.scale) - system.target_origin, texel_size);
-        lit = textureSampleLevel(accumulation, linear_sampler, place, 0.0);
+        let position = filtered_position(pixel / f32(system.scale) - system.target_origin, texel_size);
+        lit = textureSampleLevel(accumulation, linear_sampler, position, 0.0);
     } else {
         lit = sample_lit(pixel, texel_size);
     }

@@ -7,7 +7,7 @@
 @group(3) @binding(2) var depth_slopes: texture_2d<f32>;
 
 // Samples the lit smoke at a pixel of the view. Under UPSAMPLE_GUIDED, each texel is carried to the pixel's depth along
-// its slope. The filter does not depend on depth where no slope is near, which is most of a picture.
+// its slope. The filter does not depend on depth where no slope is near, which is most of an image.
 // `texel_size`: filter_texel_size().
 fn sample_lit(pixel: vec2f, texel_size: vec2f) -> vec4f {
     if UPSAMPLE != UPSAMPLE_GUIDED || system.scale == 1u {
@@ -18,9 +18,9 @@ fn sample_lit(pixel: vec2f, texel_size: vec2f) -> vec4f {
         return vec4f(0.0);
     }
     if !EXACT_FILTERING {
-        let place = filtered_place(texel, texel_size);
-        if all(textureSampleLevel(depth_slopes, linear_sampler, place, 0.0) == vec4f(0.0)) {
-            return textureSampleLevel(accumulation, linear_sampler, place, 0.0);
+        let position = filtered_position(texel, texel_size);
+        if all(textureSampleLevel(depth_slopes, linear_sampler, position, 0.0) == vec4f(0.0)) {
+            return textureSampleLevel(accumulation, linear_sampler, position, 0.0);
         }
     }
     let corner = texel - 0.5;
@@ -52,15 +52,15 @@ fn sample_lit(pixel: vec2f, texel_size: vec2f) -> vec4f {
     let depth = min(scene_view_depth(pixel), system.smoke_depth_limit);
     let weights = surface_weights(fraction, depths, depth);
     let four = carried_value(weights, values, slopes, depths, depth, 1.0 / system.fade_scale);
-    let share = four_texels_share(dot(weights, vec4f(1.0)));
-    if share == 1.0 {
+    let weight = four_texels_weight(dot(weights, vec4f(1.0)));
+    if weight == 1.0 {
         return four;
     }
-    return mix(mean_of_sixteen(base, fraction, depth), four, share);
+    return mix(mean_of_sixteen(base, fraction, depth), four, weight);
 }
 
-// Coordinate at which the hardware filters the texels around a place, without reading beyond the part in use.
-fn filtered_place(texel: vec2f, texel_size: vec2f) -> vec2f {
+// Coordinate at which the hardware filters the texels around a position, without reading beyond the part in use.
+fn filtered_position(texel: vec2f, texel_size: vec2f) -> vec2f {
     return clamp(texel, vec2f(0.5), system.target_size - 0.5) * texel_size;
 }
 

@@ -36,12 +36,12 @@ fn sample_noise_octaves(noise: texture_3d<f32>, repeat_sampler: sampler, coordin
     var sum = vec4f(0.0);
     var total = 0.0;
     var weight = 1.0;
-    var place = coordinate;
+    var position = coordinate;
     for (var octave = 0u; octave < octaves; octave++) {
-        sum += sample_noise_volume(noise, repeat_sampler, place) * weight;
+        sum += sample_noise_volume(noise, repeat_sampler, position) * weight;
         total += weight;
         weight *= 0.5;
-        place *= 3.0;
+        position *= 3.0;
     }
     let texel = sum / total;
     return vec4f(texel.rgb * 2.0 - 1.0, texel.a);

@@ -10,11 +10,11 @@ const OPTICAL_DEPTH_KNOTS: f32 = 16.0;
 // quarters of the knots.
 fn optical_depth_in_front(knots: array<vec4f, 4>, view_depth: f32, smoke_near: f32, smoke_far: f32) -> f32 {
     let through = (view_depth - smoke_near) / max(smoke_far - smoke_near, 1.0e-4);
-    let place = saturate(through * 0.5 + 0.25) * (OPTICAL_DEPTH_KNOTS - 1.0);
-    let low = u32(min(place, OPTICAL_DEPTH_KNOTS - 2.0));
+    let position = saturate(through * 0.5 + 0.25) * (OPTICAL_DEPTH_KNOTS - 1.0);
+    let low = u32(min(position, OPTICAL_DEPTH_KNOTS - 2.0));
     let high = low + 1u;
     var values = knots;
-    return mix(values[low / 4u][low % 4u], values[high / 4u][high % 4u], place - f32(low));
+    return mix(values[low / 4u][low % 4u], values[high / 4u][high % 4u], position - f32(low));
 }
 
 // e^(-depth_weight · optical depth), at most 1, so that sums of thousands of sprites stay within f16. The exponent is

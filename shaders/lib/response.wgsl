@@ -7,7 +7,7 @@ const BACKLIGHT_SAME: u32 = 0u;
 const BACKLIGHT_RAMP: u32 = 1u;
 override BACKLIGHT: u32 = BACKLIGHT_SAME;
 
-// Share of a light that the smoke sends to the viewer: ramp(dot(n, l) / 2 + 1/2, amount · boost). `against`: as from
+// Fraction of a light that the smoke sends to the viewer: ramp(dot(n, l) / 2 + 1/2, amount · boost). `against`: as from
 // backlight_weight(). (OTEE "Diffuse lighting")
 fn diffuse_response(
     ramp: texture_2d<f32>,
@@ -38,7 +38,7 @@ fn soft_scatter_curve(
     return mix(scatter_color, ambient_color, soft_scatter_weight(amount, scatter_amount, scatter_smooth));
 }
 
-// Light that hot smoke gives, per share of the scene that all smoke hides. `fire`: as from fire_from_moments().
+// Light that hot smoke gives, per fraction of the scene that all smoke hides. `fire`: as from fire_from_moments().
 fn fire_response(ramp: texture_2d<f32>, linear_sampler: sampler, fire: vec2f, amount: f32, boost: f32) -> vec3f {
     return sample_ramp_2d(ramp, linear_sampler, vec2f(fire.x, coverage(amount * fire.y, boost))) * fire.y;
 }

@@ -18,7 +18,7 @@ fn grid_entry(light: vec4f, origin: vec3f, size: vec3f) -> vec4f {
     return vec4f(origin + direction * enter, select(0.0, 1.0, enter < reach));
 }
 
-// Share of a light that falls through smoke onto the scene. `painted`: color of the shadow ramp for that optical depth and a
+// Fraction of a light that falls through smoke onto the scene. `painted`: color of the shadow ramp for that optical depth and a
 // light behind the smoke, which tints what is left of the light.
 fn transmitted_light(optical_depth: f32, painted: vec3f) -> vec3f {
     let brightest = max(painted.r, max(painted.g, painted.b));

@@ -1,5 +1,5 @@
-// Shadow of smoke on a picture that is lit already: its surfaces from their depth, and the share of their light that is left.
-// View space.
+// Shadow of smoke on an image that is lit already: its surfaces from their depth, and the fraction of their light that is
+// left. View space.
 
 // The shorter of two steps along the viewer's direction: the one that does not cross an edge.
 fn smoother_step(a: vec3f, b: vec3f) -> vec3f {
@@ -14,7 +14,7 @@ fn scene_normal(center: vec3f, left: vec3f, right: vec3f, above: vec3f, below: v
     return normal * inverseSqrt(max(dot(normal, normal), 1.0e-30));
 }
 
-// Share of the scene's light that is left. `full`: light of a white matte surface without smoke. `shaded`: through it.
-fn share_of_light(full: vec3f, shaded: vec3f) -> vec3f {
+// Fraction of the scene's light that is left. `full`: light of a white matte surface without smoke. `shaded`: through it.
+fn fraction_of_light(full: vec3f, shaded: vec3f) -> vec3f {
     return (shaded + 1.0e-6) / (full + 1.0e-6);
 }

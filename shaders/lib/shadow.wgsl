@@ -35,17 +35,17 @@ fn shadow_ray(light: vec4f, origin: vec3f, size: vec3f) -> vec4f {
 // square of the distance and the angle are a sequence of low discrepancy. (Roberts, "The Unreasonable Effectiveness of
 // Quasirandom Sequences", 2018)
 fn light_disc_offset(step: u32, direction: vec3f) -> vec3f {
-    let place = fract(vec2f(0.7548777, 0.5698403) * (f32(step) + 0.5));
+    let position = fract(vec2f(0.7548777, 0.5698403) * (f32(step) + 0.5));
     let axis = select(vec3f(0.0, 1.0, 0.0), vec3f(1.0, 0.0, 0.0), abs(direction.y) > 0.9);
     let right = normalize(cross(direction, axis));
-    let angle = place.y * 6.2831853;
-    return (right * cos(angle) + cross(right, direction) * sin(angle)) * sqrt(place.x);
+    let angle = position.y * 6.2831853;
+    return (right * cos(angle) + cross(right, direction) * sin(angle)) * sqrt(position.x);
 }
 
 // Optical depth of a sprite's own smoke from its center outwards, as a lookup at its center finds it.
 //
 // It is c · mass / width². The variance r²/7 of the bump along each axis grows with the size of the cells and by the
-// trilinear lookups of the march and of the result; `2.0` is fitted to the mean over places between cells. c is 7/4π for a
+// trilinear lookups of the march and of the result; `2.0` is fitted to the mean over positions between cells. c is 7/4π for a
 // Gaussian, and between 0.439 along an axis and 0.487 along the diagonal of a cube for the bump. Widening takes the bump to
 // a Gaussian as it takes away its kurtosis, by the square of r²/width².
 fn own_optical_depth(radius: f32, depth: f32) -> f32 {

@@ -4,7 +4,7 @@ const MAX_SHADOW_LAYERS: u32 = 6u;
 
 // Place of a point in a layer of a shadow map: position from the upper left corner, 0 to 1, and depth; and 1 in w, or 0 if
 // the point is outside of the layer. `clip`: the point in the layer's clip space.
-fn shadow_map_place(clip: vec4f) -> vec4f {
+fn shadow_map_position(clip: vec4f) -> vec4f {
     let ndc = clip.xyz / max(clip.w, 1.0e-6);
     let is_inside = clip.w > 1.0e-6 && all(abs(ndc) <= vec3f(1.0)) && ndc.z >= 0.0;
     return vec4f(ndc.x * 0.5 + 0.5, 0.5 - ndc.y * 0.5, ndc.z, select(0.0, 1.0, is_inside));

@@ -47,11 +47,11 @@ fn map_size(light: u32) -> vec2u {
     }
 }
 
-// Share of a light that reaches a point past the scene, between the four nearest texels. Points outside of all layers are
+// Fraction of a light that reaches a point past the scene, between the four nearest texels. Points outside of all layers are
 // lit.
-fn map_visibility(light: u32, place: vec3f) -> f32 {
+fn map_visibility(light: u32, position: vec3f) -> f32 {
     for (var layer = 0u; layer < min(visibility.maps[light].layers, MAX_SHADOW_LAYERS); layer++) {
-        let at = shadow_map_place(visibility.maps[light].clip_from_grid[layer] * vec4f(place, 1.0));
+        let at = shadow_map_position(visibility.maps[light].clip_from_grid[layer] * vec4f(position, 1.0));
         if at.w > 0.5 {
             let map = &visibility.maps[light];
             let corner = at.xy * vec2f(map_size(light)) - 0.5;
@@ -69,8 +69,8 @@ fn map_visibility(light: u32, place: vec3f) -> f32 {
     return 1.0;
 }
 
-// Share of each light that reaches an octant of a cell. `octant`: 2 per cell along each axis.
+// Fraction of each light that reaches an octant of a cell. `octant`: 2 per cell along each axis.
 fn octant_visibility(octant: vec3u) -> vec3f {
-    let place = vec3f(octant) * 0.5 + 0.25;
-    return vec3f(map_visibility(0u, place), map_visibility(1u, place), map_visibility(2u, place));
+    let position = vec3f(octant) * 0.5 + 0.25;
+    return vec3f(map_visibility(0u, position), map_visibility(1u, position), map_visibility(2u, position));
 }

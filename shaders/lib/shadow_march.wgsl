@@ -1,5 +1,5 @@
-// Marches through the density grid. The importing file has sample_density(place: vec3f) -> f32: the optical depth across a cell,
-// between the centers of eight cells, 0 outside the grid.
+// Marches through the density grid. The importing file has sample_density(position: vec3f) -> f32: the optical depth across a
+// cell, between the centers of eight cells, 0 outside the grid.
 
 #import "lib/density_grid.wgsl"
 #import "lib/shadow.wgsl"

@@ -6,10 +6,10 @@
 #import "lib/shadow.wgsl"
 #import "lib/view.wgsl"
 
-// A block of the volume at a place in cells.
-fn sample_volume(block: f32, place: vec3f) -> vec3f {
+// A block of the volume at a position in cells.
+fn sample_volume(block: f32, position: vec3f) -> vec3f {
     let size = vec3f(textureDimensions(shadow_volume));
-    let inside = clamp(place, vec3f(0.5), system.grid_size - 0.5) + vec3f(0.0, 0.0, block * size.x);
+    let inside = clamp(position, vec3f(0.5), system.grid_size - 0.5) + vec3f(0.0, 0.0, block * size.x);
     return textureSampleLevel(shadow_volume, linear_sampler, inside / size, 0.0).rgb;
 }
 
@@ -24,7 +24,7 @@ fn mean_along_ray(block: f32, ray: vec2f, moments: vec2f) -> vec3f {
     return sum / f32(DEPTH_SAMPLES);
 }
 
-// Share of each light of a block that reaches the smoke on a ray past the scene.
+// Fraction of each light of a block that reaches the smoke on a ray past the scene.
 fn scene_visibility(block: f32, ray: vec2f, moments: vec2f) -> vec3f {
     if system.visibility_block < 0.5 {
         return vec3f(1.0);
@@ -39,7 +39,7 @@ fn mean_position(ray: vec2f, moments: vec2f) -> vec3f {
 }
 
 // The same in cells.
-fn mean_place(ray: vec2f, moments: vec2f) -> vec3f {
+fn mean_cell(ray: vec2f, moments: vec2f) -> vec3f {
     return (system.grid_from_view * vec4f(mean_position(ray, moments), 1.0)).xyz;
 }
 

@@ -7,7 +7,7 @@ fn six_way_from_texel(texel: vec3f) -> vec3f {
 }
 
 // Henyey-Greenstein phase function of a cosine, without its constant factor (1 - anisotropy^2) / 4 pi, which would make
-// it a share per steradian. `anisotropy` is the mean cosine, within +-0.95. (Henyey and Greenstein, "Diffuse radiation
+// it a fraction per steradian. `anisotropy` is the mean cosine, within +-0.95. (Henyey and Greenstein, "Diffuse radiation
 // in the galaxy", 1941)
 fn henyey_greenstein(cosine: f32, anisotropy: f32) -> f32 {
     let base = 1.0 + anisotropy * anisotropy - 2.0 * anisotropy * cosine;

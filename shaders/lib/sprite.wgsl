@@ -115,8 +115,8 @@ fn sample_flipbook(
 ) -> vec4f {
     var texel = sample_at_level(sprite, linear_sampler, uv - motion * frames.blend, frames.first, lod);
     if frames.blend > 0.0 {
-        let place = uv + motion * (1.0 - frames.blend);
-        let next = sample_at_level(sprite, linear_sampler, place, frames.second, lod);
+        let position = uv + motion * (1.0 - frames.blend);
+        let next = sample_at_level(sprite, linear_sampler, position, frames.second, lod);
         texel = mix(texel, next, frames.blend);
     }
     return texel;
@@ -174,7 +174,7 @@ fn sprite_corner(index: u32) -> vec2f {
 }
 
 // Corner of a sprite's trimmed rectangle, -1..1, y up. `corner` is the one of the full square; `reach` is the extent
-// from the center to the left, bottom, right and top, as shares of half a side.
+// from the center to the left, bottom, right and top, as fractions of half a side.
 fn trimmed_corner(corner: vec2f, reach: vec4f) -> vec2f {
     return select(-reach.xy, reach.zw, corner > vec2f(0.0));
 }

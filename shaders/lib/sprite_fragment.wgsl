@@ -242,12 +242,12 @@ fn sphere_fragment(in: SpriteVertex, frames: FlipbookFrames, scene: f32) -> Spri
         return volumetric_fragment(in, scene, origin, along, interval);
     }
     // The sprite's image is on the disc through the center that faces the ray.
-    let place = unrotate(interval.axis.xy, in.rotation) / radius;
+    let position = unrotate(interval.axis.xy, in.rotation) / radius;
     var motion = vec2f(0.0);
     if MOTION {
-        motion = detail_at(in, sprite_uv(place), frames).yz * system.motion;
+        motion = detail_at(in, sprite_uv(position), frames).yz * system.motion;
     }
-    var fragment = sprite_texel(in, sprite_uv(place), frames, motion);
+    var fragment = sprite_texel(in, sprite_uv(position), frames, motion);
     let density = system.billboard_density * fragment.amount * amount;
     fragment.amount = spherical_billboard_amount(density, length(interval.axis), radius, stretch);
     return fragment;
@@ -270,8 +270,8 @@ fn volumetric_fragment(
     // Along the ray, a coordinate is its value at the entry plus the distance times its slope.
     let span = interval.leave - interval.enter;
     let entry = origin + along * interval.enter;
-    let place_at_entry = (entry - center) / in.center_radius.w;
-    let place_along = along / in.center_radius.w;
+    let position_at_entry = (entry - center) / in.center_radius.w;
+    let position_along = along / in.center_radius.w;
     let noise_at_entry = fract(noise_coordinate(world_from_view * entry, system.noise_size, system.noise_offset));
     let noise_along = world_from_view * along / system.noise_size;
     let opacity = system.volume_opacity * in.amount_lod_frame_erosion.x * span;
@@ -281,15 +281,15 @@ fn volumetric_fragment(
     for (var i = 0u; i < MARCH_STEPS; i++) {
         let end = march_boundary(f32(i + 1u) / f32(MARCH_STEPS));
         let distance = 0.5 * (begin + end) * span;
-        let place = place_at_entry + place_along * distance;
+        let position = position_at_entry + position_along * distance;
         let coordinate = noise_at_entry + noise_along * distance;
         let texel = sample_noise_octaves(noise, repeat_sampler, coordinate, NOISE_OCTAVES);
-        var amount = density_amount(opacity * (end - begin), volumetric_density(texel.w, volumetric_falloff(place)));
+        var amount = density_amount(opacity * (end - begin), volumetric_density(texel.w, volumetric_falloff(position)));
         if TECHNIQUE == TECHNIQUE_VOLUMETRIC_SOFT {
             amount *= fade_before(scene, -(entry.z + along.z * distance));
         }
         // Gradient in view space: a row vector times the inverse rotates forward.
-        normal += volumetric_normal(place, texel.xyz * world_from_view) * (amount * transmittance);
+        normal += volumetric_normal(position, texel.xyz * world_from_view) * (amount * transmittance);
         transmittance *= 1.0 - amount;
         begin = end;
     }

@@ -133,7 +133,7 @@ fn density_radius(particle: Particle) -> f32 {
 // Mean optical depth over that square, as it casts shadow.
 fn sprite_optical_depth(particle: Particle) -> f32 {
     let amount = saturate(particle.rotation_amount_frame_age.y) * system.opacity;
-    let kept = kept_share(system.eroded_share, erosion_of(particle.rotation_amount_frame_age.w));
+    let kept = kept_fraction(system.eroded_fraction, erosion_of(particle.rotation_amount_frame_age.w));
     let depth = kept * mean_optical_depth(amount, system.mean_alpha, system.peak_alpha);
     return system.shadow_density * depth / (system.density_reach * system.density_reach);
 }
@@ -152,7 +152,7 @@ fn heat_of(particle: Particle) -> f32 {
     if !FIRE {
         return 0.0;
     }
-    let by_age = painted_share(sample_ramp(heat_ramp, linear_sampler, particle.rotation_amount_frame_age.w));
+    let by_age = painted_fraction(sample_ramp(heat_ramp, linear_sampler, particle.rotation_amount_frame_age.w));
     return by_age * particle.tint_heat.w;
 }
 
@@ -205,7 +205,7 @@ fn project_sprite(particle: Particle, texels_per_pixel: f32) -> ProjectedSprite 
         let thin = stretch_of(particle, vec4f(center, radius));
         let wide = max(radius, MIN_RADIUS / (pixels * texels_per_pixel));
         stretch = stretch_of(particle, vec4f(center, wide));
-        amount *= widened_share(radius, wide, thin, stretch);
+        amount *= widened_fraction(radius, wide, thin, stretch);
         radius = wide;
     }
     let diameter = 2.0 * radius * pixels * texels_per_pixel;
@@ -237,7 +237,7 @@ fn alpha_bounds_texel(frame: i32, lod: f32) -> vec4u {
     return textureLoad(sprite_alpha_bounds, vec2i(level, frame + select(0, i32(system.frame_count), SIX_WAY)), 0);
 }
 
-// Extent of a sprite with these frames from its center to the left, bottom, right and top, as shares of half its side.
+// Extent of a sprite with these frames from its center to the left, bottom, right and top, as fractions of half its side.
 fn trimmed_extent(frames: FlipbookFrames, lod: f32) -> vec4f {
     let reach = unpack4x8unorm(alpha_bounds_texel(frames.first, lod).z);
     if frames.blend > 0.0 {
@@ -277,10 +277,10 @@ fn sprite_vertex(
         out.view_position = view_position(ndc * view.ray_scale + view.ray_offset, 1.0, view.orthographic);
     } else {
         let frames = animation_frames(SPRITE_ANIMATION, out.amount_lod_frame_erosion.z, system.frame_count);
-        let place = trimmed_corner(corner, trimmed_extent(frames, out.amount_lod_frame_erosion.y));
+        let position = trimmed_corner(corner, trimmed_extent(frames, out.amount_lod_frame_erosion.y));
         var turned = vec2f(
-            place.x * out.rotation.x - place.y * out.rotation.y,
-            place.x * out.rotation.y + place.y * out.rotation.x,
+            position.x * out.rotation.x - position.y * out.rotation.y,
+            position.x * out.rotation.y + position.y * out.rotation.x,
         );
         if STRETCH {
             turned = stretched(turned, out.stretch);
@@ -288,7 +288,7 @@ fn sprite_vertex(
         // A slab whose center has passed the near plane is drawn on the near plane.
         out.view_position = vec3f(center.xy + turned * sprite.center_radius.w, min(center.z, -view.near));
         clip = view.clip_from_view * vec4f(out.view_position, 1.0);
-        out.uv = sprite_uv(place);
+        out.uv = sprite_uv(position);
     }
     let front = view.clip_from_view * vec4f(0.0, 0.0, -sprite_front(out.center_radius), 1.0);
     let depth = saturate(front.z / front.w);

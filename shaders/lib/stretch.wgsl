@@ -34,21 +34,21 @@ fn sprite_stretch(
 // Least radius of a stretched sprite, texels of the target. Thinner ones would flicker from texel to texel.
 const MIN_RADIUS: f32 = 0.75;
 
-// Share of its amount that a sprite keeps if its radius grows from `radius` to `wide`, so that it hides as much as before.
+// Fraction of its amount that a sprite keeps if its radius grows from `radius` to `wide`, so that it hides as much as before.
 // `thin` and `stretch`: its stretch with either radius.
-fn widened_share(radius: f32, wide: f32, thin: vec2f, stretch: vec2f) -> f32 {
+fn widened_fraction(radius: f32, wide: f32, thin: vec2f, stretch: vec2f) -> f32 {
     let ratio = radius / max(wide, 1.0e-9);
     return min(ratio * ratio * (1.0 - dot(stretch, stretch)) / max(1.0 - dot(thin, thin), 1.0e-4), 1.0);
 }
 
 // Position on a sprite at rest to its position on the stretched one, relative to the center.
-fn stretched(place: vec2f, stretch: vec2f) -> vec2f {
-    return place + stretch * (dot(stretch, place) / max(1.0 - dot(stretch, stretch), 1.0e-4));
+fn stretched(position: vec2f, stretch: vec2f) -> vec2f {
+    return position + stretch * (dot(stretch, position) / max(1.0 - dot(stretch, stretch), 1.0e-4));
 }
 
 // Inverse of stretched().
-fn unstretched(place: vec2f, stretch: vec2f) -> vec2f {
-    return place - stretch * dot(stretch, place);
+fn unstretched(position: vec2f, stretch: vec2f) -> vec2f {
+    return position - stretch * dot(stretch, position);
 }
 
 // Normal on a stretched sprite, of the same length.

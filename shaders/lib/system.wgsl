@@ -59,8 +59,8 @@ struct System {
     // Density of the sprite: see mean_optical_depth().
     mean_alpha: f32,
     peak_alpha: f32,
-    // Share of the sprite's alpha that remains at an erosion of 1.
-    eroded_share: f32,
+    // Fraction of the sprite's alpha that remains at an erosion of 1.
+    eroded_fraction: f32,
     specular_scatter_falloff: f32,
     // Position of the eye minus the rise of the noise, metres, modulo one tile.
     noise_offset: vec3f,
@@ -86,7 +86,7 @@ struct System {
     shadow_density: f32,
     // Light from below, exposed.
     ground_color: vec3f,
-    // Extent of a sprite's density, as a share of the sprite's.
+    // Extent of a sprite's density, as a fraction of the sprite's.
     density_reach: f32,
     // Blocks of the volume that hold the lights' visibility past the scene, and openness to sky and ground; 0 for none.
     visibility_block: f32,

@@ -52,7 +52,7 @@ fn density_thickness(view_depth: f32, radius: f32, near: f32, scene: f32) -> f32
     return max(min(scene, view_depth + radius) - max(near, view_depth - radius), 0.0);
 }
 
-// Share of that slab that lies beyond the near plane.
+// Fraction of that slab that lies beyond the near plane.
 fn visible_slab_fraction(view_depth: f32, radius: f32, near: f32) -> f32 {
     return saturate((view_depth + radius - near) / max(2.0 * radius, 1.0e-6));
 }
@@ -62,9 +62,9 @@ fn density_amount(density: f32, thickness: f32) -> f32 {
     return 1.0 - exp(-density * thickness);
 }
 
-// Falloff of a volume from its center. `place` is the position in the sphere, -1..1. (MS "March", step 3)
-fn volumetric_falloff(place: vec3f) -> f32 {
-    return saturate(1.0 - dot(place, place));
+// Falloff of a volume from its center. `position` is the position in the sphere, -1..1. (MS "March", step 3)
+fn volumetric_falloff(position: vec3f) -> f32 {
+    return saturate(1.0 - dot(position, position));
 }
 
 // Density of a volume, 0..1: noise that is eroded from the outside in. (MS "March", steps 1 and 3)
@@ -72,7 +72,7 @@ fn volumetric_density(noise: f32, falloff: f32) -> f32 {
     return saturate(2.0 * noise - 1.0 + falloff) * falloff;
 }
 
-// Place where a step of a march ends, as a share of the way through a sphere. `done` is the share of the steps. Steps are
+// Place where a step of a march ends, as a fraction of the way through a sphere. `done` is the fraction of the steps. Steps are
 // shortest in the middle, where a volume is densest: 7 of them reach the error of 8 equal ones.
 fn march_boundary(done: f32) -> f32 {
     let from_middle = 2.0 * done - 1.0;
@@ -82,8 +82,8 @@ fn march_boundary(done: f32) -> f32 {
 
 // View-space normal at a point of a volume: out of the sphere and down the noise's density. Normals that face away are
 // turned sideways, so that steps and sprites behind each other never cancel. (MS "March", step 2)
-fn volumetric_normal(place: vec3f, gradient: vec3f) -> vec3f {
-    let normal = place + 2.0 * gradient;
+fn volumetric_normal(position: vec3f, gradient: vec3f) -> vec3f {
+    let normal = position + 2.0 * gradient;
     return normalize(vec3f(normal.xy, max(normal.z, 0.1)));
 }
 

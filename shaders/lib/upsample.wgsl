@@ -5,14 +5,14 @@ const UPSAMPLE_JOINT_BILATERAL: u32 = 1u;
 const UPSAMPLE_NEAREST_DEPTH: u32 = 2u;
 const UPSAMPLE_BILINEAR: u32 = 3u;
 
-// Depths that differ by less than this share of the pixel's depth count as one surface: a floor at a grazing angle
+// Depths that differ by less than this fraction of the pixel's depth count as one surface: a floor at a grazing angle
 // stays smooth, a fence one metre in front of a wall stays separate.
 const SURFACE_DEPTH_TOLERANCE: f32 = 0.1;
 
-// Depths that differ by less than this share of a soft fade's length show about the same amount of smoke.
+// Depths that differ by less than this fraction of a soft fade's length show about the same amount of smoke.
 const SMOKE_DEPTH_TOLERANCE: f32 = 0.4;
 
-// Share of a soft fade's length: the unit of slopes over depth, and the standard deviation of depth that damps them.
+// Fraction of a soft fade's length: the unit of slopes over depth, and the standard deviation of depth that damps them.
 const SLOPE_LENGTH: f32 = 0.05;
 
 // True if smoke hardly changes between two depths. `fade` is the length of a soft fade, metres.
@@ -66,7 +66,7 @@ fn upsample_weights(mode: u32, fraction: vec2f, depths: vec4f, depth: f32) -> ve
 // (He, Sun and Tang, "Guided image filtering", 2010, with the scene's depth as the guide)
 struct GuidedFit {
     total: f32,
-    place: vec3f,
+    position: vec3f,
     // x², y², z².
     squares: vec3f,
     // xy, xz, yz.
@@ -84,34 +84,34 @@ struct GuidedFit {
 
 // Weight of a texel. It falls to zero two texels away, and with depth as a Gaussian of which SURFACE_DEPTH_TOLERANCE is
 // two sigma.
-fn guided_weight(place: vec3f, depth: f32) -> f32 {
-    let tent = max(1.0 - abs(place.xy) * 0.5, vec2f(0.0));
-    let sigmas = place.z * (2.0 / (SURFACE_DEPTH_TOLERANCE * max(depth, 1.0e-6)));
+fn guided_weight(position: vec3f, depth: f32) -> f32 {
+    let tent = max(1.0 - abs(position.xy) * 0.5, vec2f(0.0));
+    let sigmas = position.z * (2.0 / (SURFACE_DEPTH_TOLERANCE * max(depth, 1.0e-6)));
     // Never zero by depth, because a pixel may be on a surface that no texel has seen: 1e-4 is the Gaussian at 4.3 sigma.
     return tent.x * tent.x * tent.y * tent.y * (exp(-0.5 * sigmas * sigmas) + 1.0e-4);
 }
 
-fn add_texel(fit: GuidedFit, place: vec3f, weight: f32, value: vec4f) -> GuidedFit {
-    let w = place * weight;
+fn add_texel(fit: GuidedFit, position: vec3f, weight: f32, value: vec4f) -> GuidedFit {
+    let w = position * weight;
     return GuidedFit(
         fit.total + weight,
-        fit.place + w,
-        fit.squares + w * place,
-        fit.products + w.xxy * place.yzz,
+        fit.position + w,
+        fit.squares + w * position,
+        fit.products + w.xxy * position.yzz,
         fit.value + value * weight,
         fit.x_value + value * w.x,
         fit.y_value + value * w.y,
         fit.z_value + value * w.z,
         select(min(fit.low, value), value, fit.total == 0.0),
         select(max(fit.high, value), value, fit.total == 0.0),
-        min(fit.nearest, place.z),
-        max(fit.farthest, place.z),
+        min(fit.nearest, position.z),
+        max(fit.farthest, position.z),
     );
 }
 
 // Value of the fit at the pixel. `fade` is the length of a soft fade, metres.
 fn fitted_value(fit: GuidedFit, fade: f32) -> vec4f {
-    let mean = fit.place / fit.total;
+    let mean = fit.position / fit.total;
     let value = fit.value / fit.total;
     // Covariances. The added terms damp slopes that the texels hardly determine: the positions of the sixteen texels have a
     // variance of 1/3, and 0.02 is 6 % of that.
@@ -164,14 +164,14 @@ fn depth_slope(line: DepthLine, fade: f32) -> vec4f {
 
 // Weights of the four texels around a pixel, as in upsample_weights(): bilinear times a Gaussian of the depth
 // difference; SURFACE_DEPTH_TOLERANCE is two sigma. Never zero by depth, and not normalised: the sum is the
-// share of the texels that saw the pixel's surface.
+// fraction of the texels that saw the pixel's surface.
 fn surface_weights(fraction: vec2f, depths: vec4f, depth: f32) -> vec4f {
     let sigmas = (depths - depth) * (2.0 / (SURFACE_DEPTH_TOLERANCE * max(depth, 1.0e-6)));
     return upsample_weights(UPSAMPLE_BILINEAR, fraction, depths, depth) * (exp(-0.5 * sigmas * sigmas) + 1.0e-4);
 }
 
-// Share of a value by which carried_value() may lead it out of the range of the texels before it is clamped. At 0, a channel at the
-// end of its range would stop all others; light and amount are apart by at most this share.
+// Fraction of a value by which carried_value() may lead it out of the range of the texels before it is clamped. At 0, a channel
+// at the end of its range would stop all others; light and amount are apart by at most this fraction.
 const SMALL_CHANGE: f32 = 0.05;
 
 // Mean of four texels, in columns, each carried along its slope to the pixel's depth, as far as all channels stay within the
@@ -192,9 +192,9 @@ fn carried_value(weights: vec4f, values: mat4x4f, slopes: mat4x4f, depths: vec4f
     return clamp(mean + change * min(min(steps.x, steps.y), min(steps.z, steps.w)), low, high);
 }
 
-// Share of the mean over the four texels around a pixel in its value; the rest is a mean over sixteen. `seen`: sum of
+// Fraction of the mean over the four texels around a pixel in its value; the rest is a mean over sixteen. `seen`: sum of
 // surface_weights(). From 0.2 on, as with one texel of a fifth of the bilinear weight on the pixel's surface, the four suffice;
 // below a tenth of that, no texel saw the surface.
-fn four_texels_share(seen: f32) -> f32 {
+fn four_texels_weight(seen: f32) -> f32 {
     return smoothstep(0.02, 0.2, seen);
 }

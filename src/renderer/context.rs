@@ -43,9 +43,9 @@ pub(crate) struct Shared {
     pub queue: wgpu::Queue,
     pub layouts: Layouts,
     pub textures: SharedTextures,
-    /// Bound in place of optical depths where no system receives shadow.
+    /// Bound instead of optical depths where no system receives shadow.
     pub no_shadow: wgpu::TextureView,
-    /// Bound in place of a shadow ramp where no smoke shades the scene.
+    /// Bound instead of a shadow ramp where no smoke shades the scene.
     pub no_ramp: wgpu::TextureView,
     pub pipelines: Pipelines,
     /// [`read_only_depth_is_supported`], queried once, because every query copies the adapter's information.

@@ -285,12 +285,12 @@ impl Renderer {
         self.render_debug_view(pass, DebugView::Final);
     }
 
-    /// Darkens the host's picture by the shadow of the smoke, for hosts whose shaders do not call
+    /// Darkens the host's image by the shadow of the smoke, for hosts whose shaders do not call
     /// [`shader::scene_shadow_wgsl`]: record it in the pass of [`render`](Self::render), or in that of
     /// [`RendererDescriptor::scene_color_format`], after the opaque scene and before the smoke. Needs
     /// [`FrameInput::scene_ambient`]. State of the pass as in `render`.
     ///
-    /// Each pixel is multiplied by the share of its light that is left, for a white matte surface whose normal comes from
+    /// Each pixel is multiplied by the fraction of its light that is left, for a white matte surface whose normal comes from
     /// the scene depth, under the lights of the frame, in the shadow of [`FrameInput::shadow_maps`] of the three brightest.
     /// Reflections and glowing surfaces darken as well: a host's own shader does better.
     pub fn render_scene_shadow(&self, pass: &mut wgpu::RenderPass<'_>) {

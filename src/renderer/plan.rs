@@ -235,7 +235,7 @@ fn deferred<'a>(
     let has_slopes = lights_target && upsample == Upsample::Guided && settings.scale > 1;
     let pixel = LitPixelKey { glows: computes_texels && glows, upsample, coverage, ramp_filter, exact_filtering };
     let slope_cells = has_slopes && !exact_filtering;
-    // One picture for all debug views that show it.
+    // One image for all debug views that show it.
     let same_pixels = !glows || debug_views.iter().all(|view| view.shows_glow() || !view.shows_lit_smoke());
     // At scale 1, a pixel is hardly more than its lit texel.
     let computes_pixels =

@@ -28,7 +28,7 @@ impl Renderer {
         let gpu = shared.gpu();
         let view = ViewGeometry::new(&frame.view)?;
         validate(shared, &self.host, frame)?;
-        // The passes read a single-sampled depth in place of a multisampled one.
+        // The passes read a single-sampled depth instead of a multisampled one.
         self.resolved_depth = match frame.scene_depth {
             SceneDepth::Multisampled(samples) => {
                 Some(ResolvedDepth::ensure(self.resolved_depth.take(), shared, samples)?)

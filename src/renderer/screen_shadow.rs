@@ -1,4 +1,4 @@
-//! Shadow of the smoke on a host's lit picture.
+//! Shadow of the smoke on a host's lit image.
 
 use haze_core::formula::uniforms::{LightUniform, ScreenShadowUniform};
 use haze_core::glam::{Mat4, Vec3};

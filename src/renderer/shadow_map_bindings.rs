@@ -14,7 +14,7 @@ use crate::frame::ShadowMap;
 #[derive(Debug)]
 pub(crate) struct ShadowMapBindings {
     uniform: wgpu::Buffer,
-    /// In place of a light without map.
+    /// Instead of a light without map.
     no_map: wgpu::Texture,
     /// Textures and first layers of the lights' maps, by slot.
     bound: [(wgpu::Texture, u32); LIGHTS_PER_BLOCK],

@@ -70,9 +70,9 @@ impl Stage {
     fn render_auto(&mut self, shot: &Shot, max_error: f32) -> (Image<Vec4>, u32, f32) {
         // Without the choice of a frame before.
         *self = Self::new();
-        let picture = self.render(&with_scale(shot, Scale::Auto(max_error)));
+        let image = self.render(&with_scale(shot, Scale::Auto(max_error)));
         let choice = self.renderer.scale_choices().next().unwrap();
-        (picture, choice.scale, choice.error.unwrap())
+        (image, choice.scale, choice.error.unwrap())
     }
 }
 
@@ -84,8 +84,8 @@ fn the_error_of_the_image_stays_near_the_limit() {
         let [behind, full] =
             [&without_smoke(&shot), &with_scale(&shot, Scale::Fixed(1))].map(|shot| stage.render(shot));
         [0.004, 0.01].map(|max_error| {
-            let (picture, scale, predicted) = stage.render_auto(&shot, max_error);
-            let measured = error([&picture, &full, &behind]);
+            let (image, scale, predicted) = stage.render_auto(&shot, max_error);
+            let measured = error([&image, &full, &behind]);
             println!("{name} within {max_error}: scale {scale}, predicted {predicted:.4}, measured {measured:.4}");
             assert!(
                 scale == 1 || (predicted <= max_error && measured <= 1.5 * max_error),

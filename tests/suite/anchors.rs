@@ -68,10 +68,10 @@ fn normals_survive_accumulation_and_decoding() {
 
 #[test]
 fn diffuse_coordinate_runs_from_behind_to_in_front() {
-    for (to_light, place) in
+    for (to_light, position) in
         [(Vec3::NEG_Z, 0.0), (Vec3::X, 0.5), (vec3(0.0, 0.75_f32.sqrt(), 0.5), 0.75), (Vec3::Z, 1.0)]
     {
-        assert_close(diffuse_coordinate(Vec3::Z, to_light), place);
+        assert_close(diffuse_coordinate(Vec3::Z, to_light), position);
     }
 }
 

@@ -64,15 +64,15 @@ fn soft_coverage_ramp_equals_linear_coverage() {
     let ramp = RampRecipe::load(&file("ramps", "coverage_soft.ramp.json")).unwrap();
     let pixels = ramp.bake().unwrap().to_rgb16();
     assert!(pixels.enumerate_pixels().all(|(x, _, pixel)| pixel.0 == [257 * x as u16; 3]));
-    let picture = |coverage| {
+    let image = |coverage| {
         let mut shot = Shot::load("column", UVec2::new(160, 90)).unwrap();
         shot.preset.systems[0].settings.coverage = coverage;
         shot.preset.systems[0].material.coverage_ramp = "coverage_soft".into();
         let shot = Shot::new(shot.preset, Path::new("column"), shot.size).unwrap();
         tonemap(&shot.render_on_cpu().unwrap(), &shot)
     };
-    let linear = picture(CoverageMode::Linear);
-    let ramp = picture(CoverageMode::Ramp);
+    let linear = image(CoverageMode::Linear);
+    let ramp = image(CoverageMode::Ramp);
     // Ramp texels are half floats, so an 8-bit value may round to the neighbouring step.
     assert!(linear.iter().zip(ramp.iter()).all(|(a, b)| a.abs_diff(*b) <= 1));
 }
@@ -91,7 +91,7 @@ fn committed_sprites_match_their_recipes() {
         let baked = recipe.bake_frame(frame as f32);
         // The bake is bit-exact on every platform.
         let texels: Vec<_> = frame_of(&committed, recipe.size).pixels().copied().collect();
-        assert!(texels == baked.picture.texels, "{}.png differs from its recipe; bake it again", sprite.name);
+        assert!(texels == baked.image.texels, "{}.png differs from its recipe; bake it again", sprite.name);
 
         // Motion is estimated from the committed frames, so that both sides have the same input.
         let decoded = sprite.sprite().unwrap();
@@ -129,8 +129,8 @@ fn committed_images_are_encoded_as_scripts_bake_encodes_them() {
 #[test]
 fn builtin_sprites_take_less_than_a_megabyte() {
     let files = std::fs::read_dir(file("sprites", "")).unwrap().map(|entry| entry.unwrap());
-    let pictures = files.filter(|file| file.path().extension().is_some_and(|ending| ending == "png"));
-    let bytes: u64 = pictures.map(|picture| picture.metadata().unwrap().len()).sum();
+    let images = files.filter(|file| file.path().extension().is_some_and(|ending| ending == "png"));
+    let bytes: u64 = images.map(|image| image.metadata().unwrap().len()).sum();
     assert!((500_000..1_000_000).contains(&bytes), "all sprites take {bytes} bytes");
 }
 

@@ -78,7 +78,7 @@ fn gpu_and_cpu_agree_on_alpha_of_corners() {
         let at = |x: f32, z: f32| corner(Vec3::new(x * side, height, z * side), if x > 0.0 { right } else { 1.0 });
         [at(-1.0, 1.0), at(1.0, 1.0), at(1.0, -1.0), at(-1.0, 1.0), at(1.0, -1.0), at(-1.0, -1.0)]
     };
-    let picture = |right: f32, shot: &mut Shot| {
+    let image = |right: f32, shot: &mut Shot| {
         let vertices = [square(0.0, 5.0, 1.0), square(1.5, 1.5, right)].concat();
         let triangles: Vec<_> =
             vertices.as_chunks::<3>().0.iter().map(|corners| corners.map(|corner| corner.position)).collect();
@@ -98,8 +98,8 @@ fn gpu_and_cpu_agree_on_alpha_of_corners() {
     shot.preset.camera.position = Vec3::new(0.0, 6.0, 6.0);
     shot.preset.camera.target = Vec3::ZERO;
     let black = Image::new(shot.size, Vec4::ZERO);
-    let solid = picture(1.0, &mut shot);
-    let faded = picture(0.0, &mut shot);
+    let solid = image(1.0, &mut shot);
+    let faded = image(0.0, &mut shot);
     for pair in [&solid, &faded] {
         let psnr = psnr_over(pair.each_ref(), [&black, &black]);
         assert!(psnr >= MIN_PSNR, "{psnr:.1} dB");

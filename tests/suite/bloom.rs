@@ -33,8 +33,8 @@ fn image() -> Image<Vec4> {
 fn on_gpu(shader: &str, image: &Image<Vec4>) -> Vec<Vec4> {
     let gpu = gpu();
     let pass = BloomPass::new(&gpu.device, shader);
-    let picture = gpu.device.create_texture(&wgpu::TextureDescriptor {
-        label: Some("picture"),
+    let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("image"),
         size: wgpu::Extent3d { width: SIZE.x, height: SIZE.y, depth_or_array_layers: 1 },
         mip_level_count: 1,
         sample_count: 1,
@@ -49,15 +49,15 @@ fn on_gpu(shader: &str, image: &Image<Vec4>) -> Vec<Vec4> {
     let channels = image.texels.iter().flat_map(|texel| texel.to_array());
     let bytes: Vec<_> = channels.flat_map(|channel| f16::from_f32(channel).to_le_bytes()).collect();
     gpu.queue.write_texture(
-        picture.as_image_copy(),
+        texture.as_image_copy(),
         &bytes,
         wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(8 * SIZE.x), rows_per_image: None },
-        picture.size(),
+        texture.size(),
     );
     let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    pass.record(&mut encoder, &pass.levels(&picture), STRENGTH);
+    pass.record(&mut encoder, &pass.levels(&texture), STRENGTH);
     gpu.submit(encoder).unwrap();
-    gpu.read_rgba16float(&picture).unwrap()
+    gpu.read_rgba16float(&texture).unwrap()
 }
 
 /// Largest difference of two images, relative to the brightness around it.

@@ -5,7 +5,7 @@
 use haze_core::settings::{Budget, ScaleBudget};
 use proptest::prelude::*;
 
-/// Share of the budget that the time at a finer scale must stay below.
+/// Fraction of the budget that the time at a finer scale must stay below.
 const HEADROOM: f32 = 0.85;
 
 /// Milliseconds at scale 1: a fixed part, and a part that falls with the square of the scale.
@@ -33,7 +33,7 @@ impl Host {
         Self { chooser: ScaleBudget::new(budget, scale), in_flight: [].into(), seed: 1 }
     }
 
-    /// Renders a frame, with uniform noise of up to this share of its time either way.
+    /// Renders a frame, with uniform noise of up to this fraction of its time either way.
     fn draw(&mut self, load: Load, noise: f32) -> u32 {
         self.seed = self.seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
         let noise = noise * ((self.seed >> 8) as f32 / (1 << 23) as f32 - 1.0);
@@ -100,11 +100,11 @@ proptest! {
 
     #[test]
     fn a_load_that_jumps_is_answered_within_thirty_frames(
-        ms in 1.0_f32..1.95, share in 0.2_f32..1.0, scale in 1_u32..=4, noise in 0.0_f32..0.2,
+        ms in 1.0_f32..1.95, fraction in 0.2_f32..1.0, scale in 1_u32..=4, noise in 0.0_f32..0.2,
     ) {
         let at = |ms: f32| {
-            let falling = ms * share * (scale * scale) as f32;
-            Load { fixed: ms * (1.0 - share), falling }
+            let falling = ms * fraction * (scale * scale) as f32;
+            Load { fixed: ms * (1.0 - fraction), falling }
         };
         let mut host = Host::new(Budget { min_scale: scale, ..budget(2.0) }, scale);
         prop_assert_eq!(host.scales(50, |_| at(ms), 0.0), [scale]);

@@ -28,12 +28,12 @@ fn puffs_alone(cloud: &PuffCloud<'_>, kind: &PuffKind, medium: &Medium, path_tra
     let mut sorted: Vec<_> = cloud.particles.iter().collect();
     sorted.sort_by(|a, b| a.position.z.total_cmp(&b.position.z));
     let of_light = |light: usize| {
-        let mut picture = Image::new(UVec2::splat(path_trace.size), Vec3::ZERO);
+        let mut image = Image::new(UVec2::splat(path_trace.size), Vec3::ZERO);
         let scale = 2.0 / path_trace.size as f32;
-        picture.for_each(|at, texel| {
-            let place = ((at.as_vec2() + 0.5) * scale - 1.0) * Vec2::new(1.0, -1.0);
+        image.for_each(|at, texel| {
+            let position = ((at.as_vec2() + 0.5) * scale - 1.0) * Vec2::new(1.0, -1.0);
             for puff in &sorted {
-                let local = (place - puff.position.truncate()) / puff.radius;
+                let local = (position - puff.position.truncate()) / puff.radius;
                 if local.abs().max_element() < 1.0 {
                     let traced = &puffs[puff.frame as usize];
                     let at = (local * Vec2::new(1.0, -1.0) + 1.0) * 0.5 * single.size as f32;
@@ -42,7 +42,7 @@ fn puffs_alone(cloud: &PuffCloud<'_>, kind: &PuffKind, medium: &Medium, path_tra
                 }
             }
         });
-        picture
+        image
     };
     (0..LIGHTS).map(of_light).collect()
 }
@@ -104,19 +104,18 @@ fn compare_medium(medium: &str, size: u32, samples: u32) -> [Response; 4] {
 /// per light.
 fn save(folder: &Path, medium: &str, rows: &[&LightImages]) {
     let side = rows[0][0].size.x;
-    let white =
-        1.3 * rows[0].iter().flat_map(|picture| &picture.texels).fold(0.0, |most: f32, texel| most.max(texel.x));
+    let white = 1.3 * rows[0].iter().flat_map(|image| &image.texels).fold(0.0, |most: f32, texel| most.max(texel.x));
     let exposures: Vec<_> = rows.iter().map(|row| Response::new(row, rows[0]).exposure).collect();
-    let picture = image::RgbImage::from_fn(side * LIGHTS as u32, side * rows.len() as u32, |x, y| {
+    let image = image::RgbImage::from_fn(side * LIGHTS as u32, side * rows.len() as u32, |x, y| {
         let row = rows[(y / side) as usize];
         let exposure = exposures[(y / side) as usize];
         let texel = row[(x / side) as usize].load(UVec2::new(x % side, y % side).as_ivec2()) * exposure / white;
         let code = texel.to_array().map(|light| haze_core::formula::color::srgb_from_linear(light.clamp(0.0, 1.0)));
         image::Rgb(code.map(|code| (code * 255.0).round() as u8))
     });
-    let (width, height) = picture.dimensions();
-    let picture = image::imageops::resize(&picture, 2 * width, 2 * height, image::imageops::FilterType::CatmullRom);
-    picture.save(folder.join(format!("column_{medium}.png"))).unwrap();
+    let (width, height) = image.dimensions();
+    let image = image::imageops::resize(&image, 2 * width, 2 * height, image::imageops::FilterType::CatmullRom);
+    image.save(folder.join(format!("column_{medium}.png"))).unwrap();
 }
 
 #[test]
@@ -178,27 +177,27 @@ fn shadow_ramps_bring_clouds_close_to_the_path_trace() {
     }
 }
 
-/// Mean error of the light that falls through clouds of a medium onto the ground, and its mean shadow: shares of full
+/// Mean error of the light that falls through clouds of a medium onto the ground, and its mean shadow: fractions of full
 /// light, for suns from above and from the side.
 fn ground_errors(kind: &PuffKind, medium: &str) -> Vec<(f32, f32)> {
     let neutral = builtin::find(builtin::RAMPS, "shadow_neutral").unwrap().ramp().unwrap();
     let material = materials(kind, medium)[0].with_shadow(&neutral);
-    let places: Vec<_> = (0..48 * 48_u32)
+    let positions: Vec<_> = (0..48 * 48_u32)
         .map(|index| vec3((index % 48) as f32 / 16.0 - 1.5, -1.1, (index / 48) as f32 / 16.0 - 1.5))
         .collect();
     let under = |(shape, seed)| {
         let cloud = kind.cloud(shape, seed);
         let suns = [Vec3::Y, vec3(0.5, 1.0, 0.3).normalize()];
         suns.map(|sun| {
-            let drawn = cloud.drawn_transmittance(&places, sun, &material).unwrap();
+            let drawn = cloud.drawn_transmittance(&positions, sun, &material).unwrap();
             let mut error = 0.0;
             let mut shadow = 0.0;
-            for (place, drawn) in places.iter().zip(drawn) {
-                let truth = cloud.transmittance(*place, sun);
+            for (position, drawn) in positions.iter().zip(drawn) {
+                let truth = cloud.transmittance(*position, sun);
                 error += (drawn.y - truth).abs();
                 shadow = shadow + 1.0 - truth;
             }
-            (error / places.len() as f32, shadow / places.len() as f32)
+            (error / positions.len() as f32, shadow / positions.len() as f32)
         })
     };
     CLOUDS.into_iter().flat_map(under).collect()

@@ -69,15 +69,15 @@ fn read(kind: &str, path: &Path) -> Result<(), AssetError> {
             }
         }
         "png" => {
-            let picture = read_png(path)?;
-            assert!(picture.as_bytes().len() <= 64 << 20, "{} bytes", picture.as_bytes().len());
-            assert!(picture.width().max(picture.height()) <= 4096);
-            Ramp::from_image(&picture);
+            let image = read_png(path)?;
+            assert!(image.as_bytes().len() <= 64 << 20, "{} bytes", image.as_bytes().len());
+            assert!(image.width().max(image.height()) <= 4096);
+            Ramp::from_image(&image);
             // An image that is not a sprite or noise is refused with one line too.
-            let picture = picture.to_rgba8();
+            let image = image.to_rgba8();
             for refused in [
-                Sprite::from_image(path, &picture, SpriteLayout::default()).err(),
-                NoiseVolume::from_image(path, &picture).err(),
+                Sprite::from_image(path, &image, SpriteLayout::default()).err(),
+                NoiseVolume::from_image(path, &image).err(),
             ] {
                 refused.iter().for_each(|error| check_line(path, error));
             }
@@ -185,26 +185,26 @@ fn mutations(corpus: &[Sample]) -> impl Strategy<Value = Vec<Mutation>> + use<> 
 }
 
 fn mutate(bytes: &mut Vec<u8>, mutation: &Mutation) {
-    let place = |at: &Index, bytes: &Vec<u8>| at.index(bytes.len() + 1);
+    let position = |at: &Index, bytes: &Vec<u8>| at.index(bytes.len() + 1);
     match mutation {
         Mutation::Flip(at, bits) => {
-            let at = place(at, bytes);
+            let at = position(at, bytes);
             if let Some(byte) = bytes.get_mut(at) {
                 *byte ^= bits;
             }
         }
-        Mutation::Truncate(at) => bytes.truncate(place(at, bytes)),
+        Mutation::Truncate(at) => bytes.truncate(position(at, bytes)),
         Mutation::Splice(at, part) => {
-            let at = place(at, bytes);
+            let at = position(at, bytes);
             bytes.splice(at..bytes.len().min(at + part.len()), part.iter().copied());
         }
         Mutation::Repeat(at, length) => {
-            let at = place(at, bytes);
+            let at = position(at, bytes);
             let part = bytes[at..bytes.len().min(at + length)].to_vec();
             bytes.splice(at..at, part);
         }
         Mutation::Insert(at, part) => {
-            let at = place(at, bytes);
+            let at = position(at, bytes);
             bytes.splice(at..at, part.iter().copied());
         }
     }

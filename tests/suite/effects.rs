@@ -58,7 +58,7 @@ impl PresetCase {
         settings.boost = 1.0;
         settings.specular_scatter.size = 300.0;
         settings.volumetric.noise_size = 1.5;
-        // As coarse as the texels of a small picture.
+        // As coarse as the texels of a small image.
         settings.grain.tiles = 0.25;
         settings.grain.octaves = 1;
         // The near fade reaches into the smoke.
@@ -113,7 +113,7 @@ impl PresetCase {
         let scene = self.scene();
         let mut host = Host::with_context(gpu(), &scene, Some(context)).unwrap();
         host.draw(gpu(), &scene).unwrap();
-        host.picture(gpu()).unwrap()
+        host.image(gpu()).unwrap()
     }
 }
 
@@ -185,7 +185,7 @@ const CASES: &[fn(&mut PresetSystem, &mut Light)] = &[
     |s, _| (s.emitter.bounce, s.emitter.buoyancy, s.emitter.floor) = (0.5, -2.0, s.emitter.position.y - 0.4),
     |s, _| (s.emitter.floor_margin, s.emitter.buoyancy, s.emitter.floor) = (0.5, -2.0, s.emitter.position.y - 0.4),
     |s, _| (s.emitter.obstacle_margin, s.emitter.obstacle) = (0.5, s.emitter.position + vec3(0.1, 0.8, 0.0)),
-    |s, _| (s.emitter.ring_speed, s.emitter.attraction, s.emitter.small_share) = (1.0, 0.5, 0.4),
+    |s, _| (s.emitter.ring_speed, s.emitter.attraction, s.emitter.small_fraction) = (1.0, 0.5, 0.4),
     |s, _| (s.emitter.duration, s.emitter.period) = (0.4, 0.5),
     |s, _| (s.material.sprite, s.material.detail) = ("own.png".into(), "own.png".into()),
     |s, _| {
@@ -225,9 +225,9 @@ const SAME: [&str; 10] = [
     "systems[0].settings.sort_priority",
     // Names the light for people and tools.
     "lights[0].role",
-    // These pictures have one light.
+    // These images have one light.
     "systems[0].settings.shadow.lights",
-    // Shades the scene, which these pictures do not have.
+    // Shades the scene, which these images do not have.
     "systems[0].settings.shadow.scene",
     // A light that the host adds to its own.
     "systems[0].settings.fire.light",
@@ -300,18 +300,18 @@ const ROUNDING: f32 = 2.0 / 1024.0;
 /// Writes the images and particle files that the cases load.
 fn write_input_files(folder: &File) {
     for (name, lean) in [("own.png", 40), (OTHER_DETAIL, 90)] {
-        let picture = image::RgbaImage::from_fn(32, 32, |x, y| {
+        let image = image::RgbaImage::from_fn(32, 32, |x, y| {
             let inside = 255 - (2 * (x.abs_diff(16).pow(2) + y.abs_diff(12).pow(2))).min(255) as u8;
             image::Rgba([128 + lean, 200 - lean, 220 - x as u8, inside])
         });
-        picture.save(folder.join(name)).unwrap();
+        image.save(folder.join(name)).unwrap();
     }
     for (name, lean) in [("six_way.png", 40), (OTHER_SIX_WAY, 90)] {
-        let picture = image::RgbaImage::from_fn(32, 64, |x, y| {
+        let image = image::RgbaImage::from_fn(32, 64, |x, y| {
             let inside = 255 - (2 * (x.abs_diff(16).pow(2) + (y % 32).abs_diff(12).pow(2))).min(255) as u8;
             image::Rgba([128 + lean, 200 - lean, 120 - y as u8, inside])
         });
-        picture.save(folder.join(name)).unwrap();
+        image.save(folder.join(name)).unwrap();
     }
     for frame in 0..4 {
         let particle = |id: i32| {
@@ -340,7 +340,7 @@ fn settings_without_effect_are_exactly_those_that_change_no_image() {
     for (index, change) in CASES.iter().enumerate() {
         let preset_case = PresetCase::new(folder, *change);
         let settings = &preset_case.preset.systems[0].settings;
-        // These pictures have no linear depth, with which OpenGL could test sprites.
+        // These images have no linear depth, with which OpenGL could test sprites.
         let tests_host_depth = settings.accumulate.depth_source == DepthSource::Host && is_opengl();
         if tests_host_depth || settings.path == RenderPath::Tiled && !is_tiled_available() {
             has_skipped = true;
@@ -406,16 +406,16 @@ fn lamp_and_brazier_have_an_effect_only_in_the_yard_scene() {
     use crate::presets::render_on_gpu;
 
     let mut shot = Shot::load("column", SIZE).unwrap();
-    let pictures = |shot: &Shot| (shot.render_on_cpu().unwrap(), render_on_gpu(shot, true));
+    let images = |shot: &Shot| (shot.render_on_cpu().unwrap(), render_on_gpu(shot, true));
     for &scene in SceneName::ALL {
         shot.preset.environment.scene = scene;
-        let plain = pictures(&shot);
+        let plain = images(&shot);
         for field in ["environment.lamp", "environment.brazier"] {
             let mut other = shot.clone();
             set_field(&mut other.preset, field, "false").unwrap();
             let is_told = no_effect_reason(&shot.preset, field, SIZE).is_some();
             assert_eq!(is_told, scene != SceneName::Yard, "{field}");
-            let moved = pictures(&other);
+            let moved = images(&other);
             assert_eq!(is_told, moved.0 == plain.0, "{field} {}", scene.name());
             assert_eq!(is_told, moved.1 == plain.1, "{field} {}", scene.name());
         }

@@ -232,7 +232,7 @@ fn every_setting_changes_the_image_and_both_renderers_agree() {
             }
             has_effect = true;
             let on_gpu = match scene.try_on_gpu(gpu()) {
-                Ok(drawn) => drawn.picture,
+                Ok(drawn) => drawn.image,
                 // The error says that the backend does not support it.
                 Err(error) => {
                     eprintln!("skipped: {name}: {error}");

@@ -28,7 +28,7 @@ fn burning() -> TestScene {
 }
 
 fn drawn(scene: &TestScene) -> Image<Vec4> {
-    scene.on_gpu(gpu()).picture
+    scene.on_gpu(gpu()).image
 }
 
 #[test]
@@ -126,7 +126,7 @@ fn sprites_in_front_hide_the_colors_behind_them() {
     assert!(red > 0.7 && green < 0.3, "{red} {green}");
 }
 
-/// A puff in the middle of the picture, at this depth.
+/// A puff in the middle of the image, at this depth.
 fn puff(z: f32, age: f32, amount: f32, like: &Particle) -> Particle {
     Particle { position: vec3(0.0, 0.0, z), radius: 1.0, age, amount, rotation: 0.0, ..*like }
 }
@@ -199,7 +199,7 @@ fn one_system_draws_what_fire_and_smoke_draw_in_separate_passes() {
         let fire_alone = drawn_with(&[&fire], &[]);
         let smoke_alone = drawn_with(&[&smoke], &[]);
         let agreement = psnr(&one, &two);
-        // Each layer is rounded to half floats, in one system and in two at other places.
+        // Each layer is rounded to half floats, in one system and in two at other positions.
         assert!(agreement >= 60.0, "{path:?}: {agreement}");
         let effect = psnr(&one, &fire_alone).max(psnr(&one, &smoke_alone));
         println!("{path:?}: {agreement:.1} dB; without one of them {effect:.1}");

@@ -28,9 +28,9 @@ fn golden(name: &str) -> PathBuf {
 }
 
 /// Clamps to 0..1 and encodes as sRGB. There is no tonemap, because it would compress differences.
-fn encode(picture: &Image<Vec4>) -> RgbImage {
-    let mut encoded = RgbImage::new(picture.size.x, picture.size.y);
-    for (texel, pixel) in picture.texels.iter().zip(encoded.pixels_mut()) {
+fn encode(image: &Image<Vec4>) -> RgbImage {
+    let mut encoded = RgbImage::new(image.size.x, image.size.y);
+    for (texel, pixel) in image.texels.iter().zip(encoded.pixels_mut()) {
         let channel = |linear: f32| (srgb_from_linear(linear.clamp(0.0, 1.0)) * 255.0).round() as u8;
         *pixel = Rgb([channel(texel.x), channel(texel.y), channel(texel.z)]);
     }
@@ -74,12 +74,12 @@ fn compare(name: &str, shot: &Shot) {
         "{name} is larger than {MAX_GOLDEN_BYTES} bytes"
     );
     let on_cpu = encode(&shot.render_on_cpu().unwrap());
-    for (renderer, picture) in [("GPU", &on_gpu), ("CPU", &on_cpu)] {
-        let difference = difference(picture, &golden);
+    for (renderer, image) in [("GPU", &on_gpu), ("CPU", &on_cpu)] {
+        let difference = difference(image, &golden);
         println!("{name} on the {renderer}: {difference:.2}");
         if difference > TOLERANCE {
             let found = path.with_extension("found.png");
-            write_png(&found, &DynamicImage::ImageRgb8(picture.clone()), CompressionEffort::Small).unwrap();
+            write_png(&found, &DynamicImage::ImageRgb8(image.clone()), CompressionEffort::Small).unwrap();
             panic!("{name} on the {renderer} is {difference:.2} of 255 off; see {}", found.display());
         }
     }

@@ -79,8 +79,8 @@ fn glow_changes_continuously_with_the_lights_range() {
         scene.debug_view = DebugView::SpecularScatter;
         scene.lights.remove(0);
         scene.lights[0].range = range;
-        let picture = scene.on_cpu();
-        Image { size: SIZE, texels: picture.texels.iter().map(|texel| *texel - BACKDROP).collect() }
+        let image = scene.on_cpu();
+        Image { size: SIZE, texels: image.texels.iter().map(|texel| *texel - BACKDROP).collect() }
     };
     let brightest = largest_difference(&glow(f32::INFINITY), &glow(0.01));
     assert!(brightest > 0.1, "the glow adds at most {brightest}");
@@ -101,7 +101,7 @@ fn the_glow_of_a_spot_is_what_it_sends_to_the_viewer() {
     let viewer = scene.view.view_from_world.inverse().transform_point3(Vec3::ZERO);
     let mut images_of = |light: Light| {
         scene.lights = vec![light];
-        [scene.on_cpu(), scene.on_gpu(gpu()).picture]
+        [scene.on_cpu(), scene.on_gpu(gpu()).image]
     };
     let brightest = |image: &Image<Vec4>| {
         image.texels.iter().map(|texel| (*texel - BACKDROP).truncate().max_element()).fold(0.0, f32::max)
@@ -127,7 +127,7 @@ fn with_falloff_equal_light_on_the_smoke_glows_equally() {
     let lamp = Light { radius: 0.0, range: f32::INFINITY, ..scene.lights[0] };
     let center = particle_bounds(&scene.particles, SpriteExtent::from_settings(&scene.settings)).center();
     let brightest = |scene: &TestScene| {
-        [scene.on_cpu(), scene.on_gpu(gpu()).picture].map(|image| {
+        [scene.on_cpu(), scene.on_gpu(gpu()).image].map(|image| {
             image.texels.iter().map(|texel| (*texel - BACKDROP).truncate().max_element()).fold(0.0, f32::max)
         })
     };
@@ -169,8 +169,8 @@ fn narrow_spots_are_as_bright_on_their_axis_as_wide_ones() {
     }
 }
 
-/// Share of pixels in which a channel differs by more than 1 % of the pixel's brightest channel.
-fn differing_share(a: &Image<Vec4>, b: &Image<Vec4>) -> f32 {
+/// Fraction of pixels in which a channel differs by more than 1 % of the pixel's brightest channel.
+fn differing_fraction(a: &Image<Vec4>, b: &Image<Vec4>) -> f32 {
     let apart = |(a, b): (&Vec4, &Vec4)| {
         let a = a.truncate();
         let b = b.truncate();
@@ -190,10 +190,10 @@ fn gpu_and_cpu_agree_for_lights_of_every_intensity() {
                 scene.lights = vec![Light { intensity, ..sun }, Light { intensity, ..lamp }];
                 scene.settings.diffuse.mode = mode;
                 scene.settings.path = path;
-                let on_gpu = scene.on_gpu(gpu()).picture;
+                let on_gpu = scene.on_gpu(gpu()).image;
                 let on_cpu = scene.on_cpu();
                 assert!(on_gpu.texels.iter().all(|texel| texel.is_finite()), "{} {intensity}: not finite", mode.name());
-                let apart = differing_share(&on_gpu, &on_cpu);
+                let apart = differing_fraction(&on_gpu, &on_cpu);
                 println!("{} {} {intensity:e}: {apart:.4} of the pixels differ", mode.name(), path.name());
                 assert!(apart < 0.01, "{} {} {intensity:e}: {apart} of the pixels differ", mode.name(), path.name());
             }
@@ -207,7 +207,7 @@ fn moved(by: Vec3) -> TestScene {
     scene.settings.technique = Technique::VolumetricSoft;
     scene.settings.volumetric.noise_size = 1.5;
     scene.settings.volumetric.noise_octaves = 3;
-    // Wider than the picture: rounding of the light's position moves a small glow visibly.
+    // Wider than the image: rounding of the light's position moves a small glow visibly.
     scene.settings.specular_scatter.size = 1800.0;
     for particle in &mut scene.particles {
         // Multiples of 1/128 m stay exact in f32 after the translation.
@@ -227,7 +227,7 @@ fn noise_keeps_its_precision_far_from_the_origin() {
     let here = moved(Vec3::ZERO);
     let there = moved(by);
     let on_cpu = psnr(&here.on_cpu(), &there.on_cpu());
-    let on_gpu = psnr(&here.on_cpu(), &there.on_gpu(gpu()).picture);
+    let on_gpu = psnr(&here.on_cpu(), &there.on_gpu(gpu()).image);
     println!("49 km away: {on_cpu:.1} dB, on the GPU {on_gpu:.1} dB");
     assert!(on_cpu > 90.0 && on_gpu > MIN_PSNR, "CPU {on_cpu} dB, GPU {on_gpu} dB");
 }
@@ -267,7 +267,7 @@ fn exposure_multiplies_all_light_of_the_smoke() {
         brighter.settings.soft_scatter.ambient_color *= 3.0;
         scene.exposure = 3.0;
         let on_cpu = scene.on_cpu();
-        let on_gpu = scene.on_gpu(gpu()).picture;
+        let on_gpu = scene.on_gpu(gpu()).image;
         assert!(largest_difference(&on_cpu, &brighter.on_cpu()) < 1.0e-4, "{mode:?}");
         assert!(psnr(&on_cpu, &on_gpu) > MIN_PSNR, "{path:?} {mode:?}");
     }

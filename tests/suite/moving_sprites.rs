@@ -87,11 +87,11 @@ fn streak(velocity: Vec3, path: RenderPath) -> TestScene {
 
 /// Numbers of columns and rows that a scene's smoke changes.
 fn size_of(scene: &TestScene) -> (usize, usize) {
-    let picture = scene.on_gpu(gpu()).picture;
-    let empty = TestScene { particles: Vec::new(), ..scene.clone() }.on_gpu(gpu()).picture;
+    let image = scene.on_gpu(gpu()).image;
+    let empty = TestScene { particles: Vec::new(), ..scene.clone() }.on_gpu(gpu()).image;
     let differs = |x: i32, y: i32| {
         let at = IVec2::new(x, y);
-        (picture.load(at) - empty.load(at)).abs().max_element() > 0.004
+        (image.load(at) - empty.load(at)).abs().max_element() > 0.004
     };
     let width = SIZE.x as i32;
     let height = SIZE.y as i32;
@@ -123,9 +123,9 @@ fn sprites_grow_along_their_motion_only() {
 
 /// Sum of what a scene's smoke changes.
 fn change(scene: &TestScene) -> f32 {
-    let picture = scene.on_gpu(gpu()).picture;
-    let empty = TestScene { particles: Vec::new(), ..scene.clone() }.on_gpu(gpu()).picture;
-    picture.texels.iter().zip(&empty.texels).map(|(a, b)| (a - b).abs().element_sum()).sum()
+    let image = scene.on_gpu(gpu()).image;
+    let empty = TestScene { particles: Vec::new(), ..scene.clone() }.on_gpu(gpu()).image;
+    image.texels.iter().zip(&empty.texels).map(|(a, b)| (a - b).abs().element_sum()).sum()
 }
 
 #[test]
@@ -169,8 +169,8 @@ fn ripple(path: RenderPath, seconds: f32) -> f32 {
         ..Particle::default()
     };
     scene.particles = (0..33).map(particle).collect();
-    let picture = scene.on_gpu(gpu()).picture;
-    let middle = |x: i32| picture.load(IVec2::new(x, SIZE.y as i32 / 2)).x;
+    let image = scene.on_gpu(gpu()).image;
+    let middle = |x: i32| image.load(IVec2::new(x, SIZE.y as i32 / 2)).x;
     let amounts: Vec<f32> = (SIZE.x as i32 * 3 / 8..SIZE.x as i32 * 5 / 8).map(middle).collect();
     let (low, high) = amounts.iter().fold((f32::MAX, 0.0_f32), |(low, high), a| (low.min(*a), high.max(*a)));
     (high - low) / (amounts.iter().sum::<f32>() / amounts.len() as f32)
@@ -196,17 +196,17 @@ fn velocities_that_are_no_numbers_hide_their_sprites_alone() {
     scene.bounds = Some(particle_bounds(&scene.particles, SpriteExtent::from_settings(&scene.settings)));
     let mut host = Host::new(gpu(), &scene).unwrap();
     // From a buffer, and from a slice.
-    let mut pictures = |scene: &TestScene| {
+    let mut images = |scene: &TestScene| {
         host.draw_buffer(gpu(), scene, &scene.particles).unwrap();
-        [host.picture(gpu()).unwrap(), scene.on_gpu(gpu()).picture]
+        [host.image(gpu()).unwrap(), scene.on_gpu(gpu()).image]
     };
-    let expected = pictures(&scene);
+    let expected = images(&scene);
     let broken = [f32::NAN, f32::INFINITY, 1.0e30].map(|speed| {
         let velocity = Vec3::new(0.0, speed, 0.0);
         Particle { position: vec3(0.0, 0.0, -5.0), velocity, ..Particle::default() }
     });
     scene.particles.extend(broken);
-    for (seen, expected) in pictures(&scene).iter().zip(&expected) {
+    for (seen, expected) in images(&scene).iter().zip(&expected) {
         let same = psnr(seen, expected);
         assert!(same >= MIN_PSNR, "{same:.1} dB");
     }

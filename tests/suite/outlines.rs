@@ -135,9 +135,9 @@ fn objects_in_front_of_smoke_keep_their_smooth_outlines() {
             [|shot| render_on_gpu(shot, true), |shot| shot.render_on_cpu().unwrap()];
         for (renderer, render) in ["GPU", "CPU"].into_iter().zip(renderers) {
             let behind = render(&smoke);
-            let picture = render(&barred);
+            let image = render(&barred);
             let whole = pixels().find(|&at| bars.covered_samples(at, SIZE) == 4).unwrap();
-            let bar = color(&picture, whole);
+            let bar = color(&image, whole);
             let mut outlines = 0;
             let mut errors = Vec::new();
             for at in pixels().filter(|&at| scale == 1 || (1..4).contains(&bars.covered_samples(at, SIZE))) {
@@ -146,12 +146,12 @@ fn objects_in_front_of_smoke_keep_their_smooth_outlines() {
                 let beside = [at.x.saturating_sub(1), (at.x + 1).min(SIZE.x - 1)].map(|x| UVec2::new(x, at.y));
                 let beside = beside.into_iter().find(|&at| bars.covered_samples(at, SIZE) == 0);
                 let smoke = match beside {
-                    Some(beside) if scale > 1 => color(&picture, beside),
+                    Some(beside) if scale > 1 => color(&image, beside),
                     _ => color(&behind, at),
                 };
                 let expected = mean((0..4).map(|index| if index < count { bar } else { smoke }));
                 outlines += u32::from(smoke.max_element() > bar.max_element() + 0.2 && (1..4).contains(&count));
-                errors.push((color(&picture, at) - expected).abs().max_element());
+                errors.push((color(&image, at) - expected).abs().max_element());
             }
             let (average, most) = average_and_most(&errors);
             println!("{renderer} {path:?} {scale}: {outlines} outlines, {average:.4} off, {most:.4} at most");
@@ -169,7 +169,7 @@ fn objects_inside_smoke_have_the_smoke_in_front_of_them_at_outlines() {
     // Bars of seven pixels, and of one.
     for width in [0.12, 0.02] {
         let bars = Bars { z: 0.0, width };
-        let picture = render_on_gpu(&with_bars(smoke(SIZE), bars), true);
+        let image = render_on_gpu(&with_bars(smoke(SIZE), bars), true);
         // Centers of finer pixels are samples of a pixel.
         let fine_size = SIZE * 6;
         let fine = render_on_gpu(&with_bars(smoke(fine_size), bars), true);
@@ -179,7 +179,7 @@ fn objects_inside_smoke_have_the_smoke_in_front_of_them_at_outlines() {
             // Finer outlines show no sample alone.
             if finer.iter().all(|&fine_at| bars.covered_samples(fine_at, fine_size).is_multiple_of(4)) {
                 let expected = mean(finer.into_iter().map(|fine_at| color(&fine, fine_at)));
-                errors.push((color(&picture, at) - expected).abs().max_element());
+                errors.push((color(&image, at) - expected).abs().max_element());
             }
         }
         let (average, most) = average_and_most(&errors);

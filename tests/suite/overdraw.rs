@@ -35,7 +35,7 @@ fn overdraw(scene: &TestScene) -> Overdraw {
 }
 
 /// Decodes the number of layers of every covered pixel from an image of the overdraw debug view.
-fn layers(picture: &Image<Vec4>) -> Vec<u32> {
+fn layers(image: &Image<Vec4>) -> Vec<u32> {
     let colors: Vec<_> = (0..=60).map(|layers| overdraw_color(layers as f32)).collect();
     let layers = |texel: &Vec4| {
         let off = |color: &glam::Vec3| (texel.truncate() - color).abs().max_element();
@@ -45,7 +45,7 @@ fn layers(picture: &Image<Vec4>) -> Vec<u32> {
             .position(|color| off(color) < 0.005)
             .unwrap_or_else(|| panic!("{texel} is the color of no layer count")) as u32
     };
-    picture.texels.iter().filter(|texel| **texel != BACKDROP).map(layers).collect()
+    image.texels.iter().filter(|texel| **texel != BACKDROP).map(layers).collect()
 }
 
 /// Stages with different projections and positions of sprites.
@@ -69,7 +69,7 @@ fn estimated_fragments_match_the_overdraw_view() {
     for (name, scene) in cases() {
         let drawn = scene.on_gpu(gpu());
         let found = drawn.renderer.overdraw();
-        let counted: u32 = layers(&drawn.picture).iter().sum();
+        let counted: u32 = layers(&drawn.image).iter().sum();
         println!("{name}: {found:?}, counted {counted}, {:.2} layers", found.mean());
         // The number of pixel centers in a square differs from its area by about the square root of its outline in
         // pixels. For 60 squares with outlines of 400 pixels that is about 150 of 100 000 fragments in total.
@@ -83,7 +83,7 @@ fn mean_overdraw_is_taken_over_the_pixels_of_the_bounding_box() {
     let scene = TestScene { debug_view: DebugView::ReducedDepth, ..scene() };
     let drawn = scene.on_gpu(gpu());
     let found = drawn.renderer.overdraw();
-    let in_box = drawn.picture.texels.iter().filter(|texel| **texel != BACKDROP).count();
+    let in_box = drawn.image.texels.iter().filter(|texel| **texel != BACKDROP).count();
     // Seen head-on, the bounding box is a rectangle; its edges may lie anywhere within their pixels.
     let outline = 2 * (SIZE.x + SIZE.y);
     assert!((found.texels - in_box as f64).abs() <= f64::from(outline), "{found:?}, drawn pixels {in_box}");
@@ -132,7 +132,7 @@ fn overdraw_is_independent_of_scale_and_counts_repeated_draws() {
 #[test]
 fn overdraw_of_many_sprites_is_estimated_from_a_sample() {
     let few = scene();
-    // 101 sprites in place of each: every second sprite is counted, 50 or 51 of them, so the estimate is off by up to 1 %.
+    // 101 sprites instead of each: every second sprite is counted, 50 or 51 of them, so the estimate is off by up to 1 %.
     let many = TestScene {
         particles: few.particles.iter().flat_map(|particle| std::iter::repeat_n(*particle, 101)).collect(),
         ..scene()
@@ -230,7 +230,7 @@ fn amount_and_overdraw_show_all_systems() {
     for debug_view in [DebugView::Amount, DebugView::Overdraw] {
         let [first, all] = [&alone, &both].map(|scene| {
             let scene = TestScene { debug_view, ..scene.clone() };
-            let on_gpu = scene.on_gpu(gpu()).picture;
+            let on_gpu = scene.on_gpu(gpu()).image;
             let on_cpu = scene.on_cpu();
             let behind = Image::new(on_gpu.size, scene.backdrop());
             let found = psnr_over([&on_gpu, &on_cpu], [&behind, &behind]);
@@ -238,7 +238,7 @@ fn amount_and_overdraw_show_all_systems() {
             on_gpu
         });
         let same = first.texels.iter().zip(&all.texels).filter(|(first, all)| first == all).count();
-        let share = same as f64 / first.texels.len() as f64;
-        assert!(share > 0.9 && share < 1.0, "{debug_view:?}: {share}");
+        let fraction = same as f64 / first.texels.len() as f64;
+        assert!(fraction > 0.9 && fraction < 1.0, "{debug_view:?}: {fraction}");
     }
 }

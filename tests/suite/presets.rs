@@ -15,7 +15,7 @@ use haze_preset::{EndBehavior, Preset, SceneName, UpAxis};
 use crate::gpu::{gpu, shared_context};
 use crate::psnr::{MIN_PSNR, psnr_over};
 
-/// Loads a preset with the path `raster` in place of `auto`, whose choice depends on the machine. `tiled.rs` compares
+/// Loads a preset with the path `raster` instead of `auto`, whose choice depends on the machine. `tiled.rs` compares
 /// the path `tiled` with `raster`.
 pub fn shot(name: &str, size: UVec2) -> Shot {
     let mut shot = Shot::load(name, size).unwrap();
@@ -61,9 +61,9 @@ pub fn render_on_gpu(shot: &Shot, exact_filtering: bool) -> Image<Vec4> {
     };
     let mut renderer = renderer.unwrap();
     renderer.draw(gpu(), shot).unwrap();
-    let picture = renderer.read(gpu(), shot).unwrap();
+    let image = renderer.read(gpu(), shot).unwrap();
     kept().push((thread, renderer));
-    picture
+    image
 }
 
 fn on_gpu(shot: &Shot) -> Image<Vec4> {
@@ -168,8 +168,8 @@ fn column_of_ply(frame: u32) -> Vec<u8> {
     for id in 0..300_i32 {
         let angle = id as f32 * 2.4 + frame as f32 * 0.1;
         let height = id as f32 + 3.0 * frame as f32;
-        let place = [40.0 * angle.cos(), 40.0 * angle.sin(), height];
-        place.iter().chain(&[30.0, 0.2]).for_each(|value| file.extend(value.to_le_bytes()));
+        let position = [40.0 * angle.cos(), 40.0 * angle.sin(), height];
+        position.iter().chain(&[30.0, 0.2]).for_each(|value| file.extend(value.to_le_bytes()));
         file.extend((299 - id).to_le_bytes());
     }
     file
@@ -260,7 +260,7 @@ fn systems_around_each_other_are_drawn_by_their_priority() {
 #[test]
 fn gpu_and_cpu_agree_on_every_scene() {
     let props = [(true, true), (false, true), (true, false)];
-    let mut pictures = Vec::new();
+    let mut images = Vec::new();
     for (scene, (lamp, brazier)) in SceneName::ALL.iter().flat_map(|scene| props.map(|props| (*scene, props))) {
         let mut shot = shot("column", UVec2::new(320, 180));
         let environment = &mut shot.preset.environment;
@@ -272,12 +272,12 @@ fn gpu_and_cpu_agree_on_every_scene() {
         let (alone, on_cpu) = agreement_of_scene(&shot);
         println!("{scene}: {psnr:.1} dB, without smoke {alone:.1} dB");
         assert!(psnr >= MIN_PSNR && alone >= MIN_PSNR, "{scene}: {psnr:.1} dB, without smoke {alone:.1} dB");
-        if !pictures.contains(&on_cpu) {
-            pictures.push(on_cpu);
+        if !images.contains(&on_cpu) {
+            images.push(on_cpu);
         }
     }
     // Only one scene, the yard, shows the lamp and the brazier, so the props add two images.
-    assert_eq!(pictures.len(), SceneName::ALL.len() + 2);
+    assert_eq!(images.len(), SceneName::ALL.len() + 2);
 }
 
 #[test]

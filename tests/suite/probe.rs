@@ -52,7 +52,7 @@ fn difference(a: Vec3, b: Vec3) -> f32 {
     ((a - b).abs() / step).max_element()
 }
 
-/// Share of pixels that may differ by more. At edges of the bounding box and of boxes in the scene, the rasterizer's
+/// Fraction of pixels that may differ by more. At edges of the bounding box and of boxes in the scene, the rasterizer's
 /// precision of 1/256 pixel decides what a pixel shows.
 const EDGES: f32 = 0.005;
 
@@ -83,7 +83,7 @@ fn assert_matches_image(what: &str, probed: impl Fn(&Probe) -> Option<Vec3>, pro
 fn probed_color_matches_the_image() {
     for preset in builtin::PRESETS {
         let shot = Shot::load(preset.name, SIZE).unwrap();
-        let Some((captured, pictures)) = render_and_capture(&shot, &[DebugView::Final]) else { return };
+        let Some((captured, images)) = render_and_capture(&shot, &[DebugView::Final]) else { return };
         // A probe explains the surfaces behind an outline.
         let front = captured.front.clone();
         let mut probes = captured.with_shot(shot.clone()).probe(&pixels()).unwrap();
@@ -96,7 +96,7 @@ fn probed_color_matches_the_image() {
             assert!(probes.iter().all(|probe| probe.color.is_none()), "{}: a color of a forward system", preset.name);
             continue;
         }
-        assert_matches_image(preset.name, |probe| probe.color.map(|color| color.xyz()), &probes, &pictures[0]);
+        assert_matches_image(preset.name, |probe| probe.color.map(|color| color.xyz()), &probes, &images[0]);
     }
 }
 
@@ -133,11 +133,11 @@ fn probed_values_match_every_debug_view() {
         let settings = &mut shot.preset.systems[0].settings;
         settings.path = path;
         change(settings);
-        let Some((captured, pictures)) = render_and_capture(&shot, &stages.map(|(stage, _)| stage)) else { return };
+        let Some((captured, images)) = render_and_capture(&shot, &stages.map(|(stage, _)| stage)) else { return };
         let probes = captured.with_shot(shot.clone()).probe(&pixels()).unwrap();
-        for ((stage, probed), picture) in stages.iter().zip(&pictures) {
+        for ((stage, probed), image) in stages.iter().zip(&images) {
             let what = format!("{} {}, {index}", path.name(), stage.name());
-            assert_matches_image(&what, |probe| probe.systems.first().map(probed), &probes, picture);
+            assert_matches_image(&what, |probe| probe.systems.first().map(probed), &probes, image);
         }
         if shot.preset.systems[0].settings.diffuse.mode == DiffuseMode::Ramp {
             for system in probes.iter().flat_map(|probe| &probe.systems) {
@@ -197,11 +197,11 @@ fn probed_coordinates_of_the_shadow_ramp_match_the_image() {
         // One light at a time, or the image would show a sum.
         shot.preset.lights = vec![Light { color: Vec3::ONE, ..*light }];
         shot.preset.systems[0].settings.path = path;
-        let Some((captured, pictures)) = render_and_capture(&shot, &[DebugView::Diffuse]) else { return };
+        let Some((captured, images)) = render_and_capture(&shot, &[DebugView::Diffuse]) else { return };
         let probes = captured.clone().with_shot(shot.clone()).probe(&pixels()).unwrap();
         // Blue is 1 in both ramps.
         let shadow = |probe: &SystemProbe| Some((probe.lights.first()?.shadow?.coordinate, probe.diffuse.z));
-        assert_coordinate_matches_image(&format!("{} {index}", path.name()), shadow, &probes, &pictures[0]);
+        assert_coordinate_matches_image(&format!("{} {index}", path.name()), shadow, &probes, &images[0]);
         for shadow in probes.iter().flat_map(|probe| &probe.systems).filter_map(|system| system.lights[0].shadow) {
             let expected = shadow.coordinate.extend(1.0) * shadow.transmittance.z;
             assert!(difference(shadow.transmittance, expected) < 1.0, "{shadow:?}");
@@ -225,10 +225,10 @@ fn probed_coordinates_of_the_fire_ramp_match_the_image() {
     settings.specular_scatter.intensity = 0.0;
     settings.accumulate.lighting_resolution = LightingResolution::Full;
     shot.materials[0].fire_ramp = coordinate_ramp();
-    let Some((captured, pictures)) = render_and_capture(&shot, &[DebugView::Combined]) else { return };
+    let Some((captured, images)) = render_and_capture(&shot, &[DebugView::Combined]) else { return };
     let probes = captured.with_shot(shot.clone()).probe(&pixels()).unwrap();
     let fire = |probe: &SystemProbe| probe.fire.map(|fire| (fire.coordinate, fire.light.z));
-    assert_coordinate_matches_image("fire", fire, &probes, &pictures[0]);
+    assert_coordinate_matches_image("fire", fire, &probes, &images[0]);
     shot.preset.systems[0].settings.fire.intensity = 0.0;
     let Some((captured, _)) = render_and_capture(&shot, &[DebugView::Final]) else { return };
     let probes = captured.with_shot(shot).probe(&pixels()).unwrap();

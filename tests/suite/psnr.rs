@@ -24,9 +24,9 @@ pub fn psnr(a: &Image<Vec4>, b: &Image<Vec4>) -> f32 {
 /// Returns the peak signal-to-noise ratio of two images of smoke, dB. Only pixels that differ from their background by
 /// more than 1/255 in either image are counted; the others contain no smoke. Linear HDR color is clamped to 0..4 and
 /// has peak 4; alpha has peak 1.
-pub fn psnr_over(pictures: [&Image<Vec4>; 2], behind: [&Image<Vec4>; 2]) -> f32 {
-    let [a, b] = pictures.map(|picture| &picture.texels);
-    let [behind_a, behind_b] = behind.map(|picture| &picture.texels);
+pub fn psnr_over(images: [&Image<Vec4>; 2], behind: [&Image<Vec4>; 2]) -> f32 {
+    let [a, b] = images.map(|image| &image.texels);
+    let [behind_a, behind_b] = behind.map(|image| &image.texels);
     assert!(a.len() == b.len() && a.len() == behind_a.len() && a.len() == behind_b.len());
     let differs = |a: Vec4, b: Vec4| (a - b).abs().max_element() > 1.0 / 255.0;
     let smoke = (0..a.len()).filter(|&i| differs(a[i], behind_a[i]) || differs(b[i], behind_b[i]));

@@ -18,7 +18,7 @@ use crate::presets::render_on_gpu;
 
 const SIZE: UVec2 = UVec2::new(128, 72);
 
-/// Share of the fields that change.
+/// Fraction of the fields that change.
 const CHANGED: f32 = 0.25;
 
 /// Field visitor that sets some fields to random values.
@@ -147,10 +147,10 @@ const MIN_DISPLAYED_PSNR: f32 = 45.0;
 /// The same with the checkerboard: rounding decides on which check a texel lies, and one such texel may be all that is seen.
 const MIN_DISPLAYED_PSNR_OF_CHECKS: f32 = 40.0;
 
-/// Largest share of the pixels at such edges. The scene at 128x72 has fence posts one pixel wide.
-const MAX_EDGE_SHARE: f32 = 0.02;
+/// Largest fraction of the pixels at such edges. The scene at 128x72 has fence posts one pixel wide.
+const MAX_EDGE_FRACTION: f32 = 0.02;
 
-/// Returns the PSNR of two images as displayed, dB, and the share of the pixels that it leaves out. A rasterizer snaps
+/// Returns the PSNR of two images as displayed, dB, and the fraction of the pixels that it leaves out. A rasterizer snaps
 /// edges to 1/256 pixel, so an edge may lie one pixel further in one image. Such a pixel differs, but each of its two
 /// values lies between the values around it in the other image.
 fn displayed_psnr(images: [&Image<Vec4>; 2], transform: DisplayTransform) -> (f32, f32) {
@@ -205,7 +205,7 @@ fn gpu_and_cpu_agree_on_random_presets() {
         println!("{seed}: {psnr:.1} dB, edges {:.2} %, {}", 100.0 * edges, shot.preset.name);
         let has_checks = shot.preset.systems.iter().any(|system| system.settings.debug.checkerboard);
         let least = if has_checks { MIN_DISPLAYED_PSNR_OF_CHECKS } else { MIN_DISPLAYED_PSNR };
-        if psnr < least || edges > MAX_EDGE_SHARE {
+        if psnr < least || edges > MAX_EDGE_FRACTION {
             failures.push(seed);
             println!("{}", serde_json::to_string(&shot.preset).unwrap());
         }
@@ -228,6 +228,6 @@ fn the_scene_is_the_same_on_both_renderers_with_a_close_near_plane_and_a_light_i
         let (psnr, edges) =
             displayed_psnr(images.each_ref(), DisplayTransform { exposure: 1.0, tonemap: Tonemap::Aces });
         println!("{name}: {psnr:.1} dB, edges {:.2} %", 100.0 * edges);
-        assert!(psnr >= MIN_DISPLAYED_PSNR && edges <= MAX_EDGE_SHARE);
+        assert!(psnr >= MIN_DISPLAYED_PSNR && edges <= MAX_EDGE_FRACTION);
     }
 }

@@ -44,7 +44,7 @@ impl ShaderFolder {
         Ok(shared_context().with_shaders(&Sources::from_folder(self.0.path())?)?)
     }
 
-    fn picture(&self) -> Image<Vec4> {
+    fn image(&self) -> Image<Vec4> {
         draw(Some(&self.context().unwrap()))
     }
 
@@ -86,7 +86,7 @@ fn trimming_transparent_borders_of_sprites_does_not_change_the_image() {
         let drawn = |context| {
             let mut host = Host::with_context(gpu(), &scene, context).unwrap();
             host.draw(gpu(), &scene).unwrap();
-            host.picture(gpu()).unwrap()
+            host.image(gpu()).unwrap()
         };
         // Positions interpolated between other corners round differently. GPUs also snap each corner to 1/256 texel
         // first.
@@ -101,11 +101,11 @@ fn draw(context: Option<&Context>) -> Image<Vec4> {
     let scene = TestScene::new(SIZE);
     let mut host = Host::with_context(gpu(), &scene, context).unwrap();
     host.draw(gpu(), &scene).unwrap();
-    host.picture(gpu()).unwrap()
+    host.image(gpu()).unwrap()
 }
 
 /// Returns `file:line:column` (1-based) of the first `what` in one of haze's shader files.
-fn place(file: &str, what: &str) -> String {
+fn location(file: &str, what: &str) -> String {
     let before = shader::source(file).unwrap().split(what).next().unwrap();
     let line = before.matches('\n').count() + 1;
     format!("{file}:{line}:{}", before.rsplit('\n').next().unwrap().chars().count() + 1)
@@ -115,7 +115,7 @@ fn place(file: &str, what: &str) -> String {
 fn shader_errors_report_file_line_and_column() {
     let refused = |from: &str, to: &str| ShaderFolder::new().edit("lib/color.wgsl", from, to).refusal();
     let says = |from: &str, to: &str, what: &str, reason: &str| {
-        assert_eq!(refused(from, to), format!("{}: {reason}", place("lib/color.wgsl", what)), "{to}");
+        assert_eq!(refused(from, to), format!("{}: {reason}", location("lib/color.wgsl", what)), "{to}");
     };
     let shown = "saturate(light)";
     says(shown, "saturat(light)", shown, "no definition in scope for identifier: `saturat`");
@@ -127,8 +127,8 @@ fn shader_errors_report_file_line_and_column() {
     says("return linear * 12.92", "return vec3f(linear * 12.92)", "linear * 12.92", returned);
     // Columns count characters, not bytes; a tab is one character.
     let behind = refused("    let shown", "\t/* ü→ü */ let shown: vec2f");
-    let place_of_shown = place("lib/color.wgsl", shown);
-    let line = place_of_shown.strip_suffix(":17").unwrap();
+    let location_of_shown = location("lib/color.wgsl", shown);
+    let line = location_of_shown.strip_suffix(":17").unwrap();
     assert!(behind.starts_with(&format!("{line}:16: ")), "{behind}");
     let behind = refused("saturate(light)", "/* ü→ü */ saturat(light)");
     assert!(behind.starts_with(&format!("{line}:27: ")), "{behind}");
@@ -140,10 +140,10 @@ fn shader_errors_report_file_line_and_column() {
         "`{` is never closed",
     );
     let unended = refused("fn bounded_light", "/* fn bounded_light");
-    assert_eq!(unended, format!("{}: unterminated block comment", place("lib/color.wgsl", "fn bounded_light")));
+    assert_eq!(unended, format!("{}: unterminated block comment", location("lib/color.wgsl", "fn bounded_light")));
     // The error may be in an embedded file that no longer matches the edited one.
     let renamed = refused("fn overdraw_color", "fn overdrawn_color");
-    let called = place("transfer.wgsl", "overdraw_color");
+    let called = location("transfer.wgsl", "overdraw_color");
     assert!(renamed.starts_with(&format!("builtin:/{called}: no definition in scope")), "{renamed}");
 }
 
@@ -223,19 +223,19 @@ fn missing_and_circular_imports_are_reported_at_the_import_line() {
         folder
             .write("lib/round.wgsl", "#import \"lib/about.wgsl\"\n")
             .write("lib/about.wgsl", "\n#import \"lib/round.wgsl\"");
-        (folder.refusal(), place("lib/color.wgsl", "const MAX_HALF_FLOAT_LIGHT").replace(":1", ":9"))
+        (folder.refusal(), location("lib/color.wgsl", "const MAX_HALF_FLOAT_LIGHT").replace(":1", ":9"))
     };
-    let (unknown, place) = imports("lib/nothing.wgsl");
-    assert_eq!(unknown, format!("{place}: there is no shader file \"lib/nothing.wgsl\" to import"));
+    let (unknown, location) = imports("lib/nothing.wgsl");
+    assert_eq!(unknown, format!("{location}: there is no shader file \"lib/nothing.wgsl\" to import"));
     for outside in ["../../etc", "/etc/hostname", "lib/../../secret.wgsl", "lib", "", "\0.wgsl"] {
-        let (refused, place) = imports(outside);
+        let (refused, location) = imports(outside);
         let reason = format!("there is no shader file {outside:?} to import; expected a .wgsl file inside the folder");
-        assert_eq!(refused, format!("{place}: {reason}"));
+        assert_eq!(refused, format!("{location}: {reason}"));
     }
     let circle = "circular import: lib/round.wgsl → lib/about.wgsl → lib/round.wgsl";
     assert_eq!(imports("lib/round.wgsl").0, format!("lib/about.wgsl:2:9: {circle}"));
-    let (itself, place) = imports("lib/color.wgsl");
-    assert_eq!(itself, format!("{place}: circular import: lib/color.wgsl → lib/color.wgsl"));
+    let (itself, location) = imports("lib/color.wgsl");
+    assert_eq!(itself, format!("{location}: circular import: lib/color.wgsl → lib/color.wgsl"));
 }
 
 #[test]
@@ -250,9 +250,9 @@ fn editing_an_imported_file_changes_the_image_and_undoing_restores_it() {
     let text = std::fs::read_to_string(folder.0.path().join("lib/color.wgsl")).unwrap();
     folder.write("lib/color.wgsl", format!("#import \"mine/tint.wgsl\"\n{text}"));
     folder.write("mine/tint.wgsl", "const SHADE = vec3f(0.5);\n");
-    assert_ne!(folder.picture(), plain);
+    assert_ne!(folder.image(), plain);
     folder.write("mine/tint.wgsl", "const SHADE = vec3f(1.0);\n");
-    assert_eq!(folder.picture(), plain);
+    assert_eq!(folder.image(), plain);
     let read: Vec<_> = Sources::from_folder(folder.0.path()).unwrap().paths().map(Path::to_owned).collect();
     let files = ["lib/blending.wgsl", "lib/color.wgsl", "lib/normal.wgsl", "mine/tint.wgsl"];
     assert_eq!(read, files.map(|file| folder.0.path().join(file)));
@@ -280,11 +280,11 @@ fn byte_order_marks_and_crlf_line_endings_are_accepted() {
     for (file, text) in shader::sources() {
         folder.write(file, format!("\u{feff}{}", text.replace('\n', "\r\n")));
     }
-    assert_eq!(folder.picture(), plain);
+    assert_eq!(folder.image(), plain);
     let text = shader::source("lib/color.wgsl").unwrap().replace('\n', "\r\n");
     folder.write("lib/color.wgsl", format!("\u{feff}{}", text.replace("saturate(light)", "saturat(light)")));
-    let place = place("lib/color.wgsl", "saturate(light)");
-    assert_eq!(folder.refusal(), format!("{place}: no definition in scope for identifier: `saturat`"));
+    let location = location("lib/color.wgsl", "saturate(light)");
+    assert_eq!(folder.refusal(), format!("{location}: no definition in scope for identifier: `saturat`"));
 }
 
 /// Loops without a counter, and why they end.
@@ -308,7 +308,7 @@ const STEPS: &[&str] = &[
     "+= SCAN_SIZE",
     "+= WORKGROUP",
     "+= measure.workgroups * WORKGROUP",
-    "+= share",
+    "+= fraction",
     "+= stride",
 ];
 

@@ -40,7 +40,7 @@ fn available_paths() -> impl Iterator<Item = RenderPath> {
 }
 
 fn drawn(scene: &TestScene) -> Image<Vec4> {
-    scene.on_gpu(gpu()).picture
+    scene.on_gpu(gpu()).image
 }
 
 #[test]
@@ -85,7 +85,7 @@ fn gpu_and_cpu_draw_the_same_shadow() {
     }
 }
 
-/// Keeps one particle, in the middle of the picture.
+/// Keeps one particle, in the middle of the image.
 fn keep_one_particle(scene: &mut TestScene) {
     scene.particles.truncate(1);
     scene.particles[0].position = vec3(-0.5, 0.0, -5.0);
@@ -157,9 +157,9 @@ fn shadow_falls_on_the_far_side_of_the_smoke() {
         scene.settings.shadow.strength = 0.0;
         let plain = drawn(&scene);
         // 21 pixels to the left and right of the middle.
-        let sum = |picture: &Image<Vec4>, column: u32| -> f32 {
+        let sum = |image: &Image<Vec4>, column: u32| -> f32 {
             let place = |i: u32| UVec2::new(column - 4 + i % 8, 40 + i / 8).as_ivec2();
-            (0..80).map(|i| picture.load(place(i)).truncate().element_sum()).sum()
+            (0..80).map(|i| image.load(place(i)).truncate().element_sum()).sum()
         };
         [59, 101].map(|column| sum(&shadowed, column) / sum(&plain, column))
     };
@@ -187,9 +187,9 @@ fn smoke_of_one_system_shades_another() {
     let same = psnr(&shaded, &both.on_cpu());
     assert!(same >= MIN_PSNR, "{same:.1} dB");
     // Right of the second system, which covers the left edge.
-    let brightness = |picture: &Image<Vec4>| {
+    let brightness = |image: &Image<Vec4>| {
         let place = |i: u32| UVec2::new(60 + i % 40, 20 + i / 40).as_ivec2();
-        (0..40 * 50).map(|i| picture.load(place(i)).truncate().element_sum()).sum::<f32>()
+        (0..40 * 50).map(|i| image.load(place(i)).truncate().element_sum()).sum::<f32>()
     };
     let before = brightness(&alone);
     let after = brightness(&shaded);
@@ -356,7 +356,7 @@ fn smoke_shades_a_further_light_nearly_as_one_of_the_first_three() {
     assert!(error(&further) < 0.1 * error(&unshaded), "{} {}", error(&further), error(&unshaded));
 }
 
-/// A picture of the scene that the smoke darkens.
+/// An image of the scene that the smoke darkens.
 fn over_a_lit_scene() -> TestScene {
     let mut scene = under_a_roof();
     scene.lights.push(Light { position: vec3(-2.0, 1.0, -4.5), intensity: 4.0, ..Light::default() });
@@ -392,13 +392,13 @@ fn a_rejected_frame_does_not_shade_the_scene() {
     let scene = over_a_lit_scene();
     let mut host = Host::new(gpu(), &scene).unwrap();
     host.draw(gpu(), &scene).unwrap();
-    assert!(host.picture(gpu()).unwrap().texels.iter().any(|texel| *texel != BACKDROP));
+    assert!(host.image(gpu()).unwrap().texels.iter().any(|texel| *texel != BACKDROP));
     let rejected = TestScene { exposure: f32::NAN, ..scene };
     let mut encoder = gpu().device.create_command_encoder(&Default::default());
     host.prepare(&mut encoder, &rejected, Particles::Slice(&rejected.particles)).unwrap_err();
     host.render(&mut encoder, &rejected);
     gpu().submit(encoder).unwrap();
-    assert!(host.picture(gpu()).unwrap().texels.iter().all(|texel| *texel == BACKDROP));
+    assert!(host.image(gpu()).unwrap().texels.iter().all(|texel| *texel == BACKDROP));
 }
 
 #[test]
@@ -417,23 +417,23 @@ fn under_one_light_the_scene_keeps_what_comes_through_the_smoke() {
         ..haze_reference::FrameInput::new(scene.view, &depth)
     };
     let frame = haze_reference::PreparedFrame::new(&frame, SIZE).unwrap();
-    let mut picture = Image::new(SIZE, Vec4::ONE);
-    frame.shade_scene(&mut picture);
+    let mut image = Image::new(SIZE, Vec4::ONE);
+    frame.shade_scene(&mut image);
     let shadow = frame.scene_shadow().unwrap();
     let world_from_clip = (scene.view.clip_from_view * scene.view.view_from_world).inverse();
     let mut darkest = 1.0_f32;
-    picture.clone().for_each(|at, texel| {
+    image.clone().for_each(|at, texel| {
         let uv = (at.as_vec2() + 0.5) / SIZE.as_vec2();
         let ndc = vec3(uv.x * 2.0 - 1.0, 1.0 - uv.y * 2.0, depth.load(at.as_ivec2()));
         let expected = shadow.haze_transmittance(world_from_clip.project_point3(ndc), 0);
         assert!((texel.truncate() - expected).abs().max_element() < 1e-2, "{at}: {texel} {expected}");
     });
-    picture.texels.iter().for_each(|texel| darkest = darkest.min(texel.y));
+    image.texels.iter().for_each(|texel| darkest = darkest.min(texel.y));
     assert!(darkest < 0.7, "{darkest}");
 }
 
-/// Shares of a light that smoke in a box takes away at places, of the first light.
-fn darkness(scene: &TestScene, light: Light, bounds: Bounds, places: impl Iterator<Item = Vec3>) -> Vec<f32> {
+/// Fractions of a light that smoke in a box takes away at positions, of the first light.
+fn darkness(scene: &TestScene, light: Light, bounds: Bounds, positions: impl Iterator<Item = Vec3>) -> Vec<f32> {
     let depth = Image::new(SIZE, 1.0);
     let lights = [light];
     let systems = [haze_reference::ParticleSystem {
@@ -447,11 +447,11 @@ fn darkness(scene: &TestScene, light: Light, bounds: Bounds, places: impl Iterat
     };
     let frame = haze_reference::PreparedFrame::new(&frame, SIZE).unwrap();
     let shadow = frame.scene_shadow().unwrap();
-    places.map(|place| 1.0 - shadow.haze_transmittance(place, 0).y).collect()
+    positions.map(|position| 1.0 - shadow.haze_transmittance(position, 0).y).collect()
 }
 
-fn darkest(shares: &[f32]) -> f32 {
-    shares.iter().copied().fold(0.0, f32::max)
+fn darkest(fractions: &[f32]) -> f32 {
+    fractions.iter().copied().fold(0.0, f32::max)
 }
 
 #[test]
@@ -463,14 +463,14 @@ fn a_larger_lamp_casts_a_softer_shadow() {
     // Makes room for the cone of the light in the grid.
     let bounds = Bounds { min: vec3(-2.0, -2.0, -7.0), max: vec3(1.0, 1.0, -4.0) };
     let center = scene.particles[0].position;
-    let shares = |radius| {
+    let fractions = |radius| {
         let position = center + vec3(0.0, 3.0, 0.0);
         let light = Light { position, radius, range: f32::INFINITY, ..Light::default() };
         darkness(&scene, light, bounds, (0..60).map(|i| center + vec3(i as f32 * 0.05 - 1.5, -1.5, 0.0)))
     };
-    let small = shares(0.0);
-    let large = shares(1.5);
-    let width = |shares: &[f32]| shares.iter().sum::<f32>() / darkest(shares);
+    let small = fractions(0.0);
+    let large = fractions(1.5);
+    let width = |fractions: &[f32]| fractions.iter().sum::<f32>() / darkest(fractions);
     println!("darkest {} {}, width {} {}", darkest(&small), darkest(&large), width(&small), width(&large));
     assert!(darkest(&large) < 0.8 * darkest(&small) && width(&large) > 1.3 * width(&small));
 }
@@ -482,12 +482,12 @@ fn shadow_on_the_scene_is_steady_while_the_box_grows() {
     let center = scene.particles[0].position;
     let light = Light { kind: LightKind::Directional, direction: vec3(1.0, -0.3, 0.17), ..Light::default() };
     // Grows toward the shadow by a tenth of a cell per step, and keeps the cells: it is as high as before.
-    let shares = |step: u32| {
+    let fractions = |step: u32| {
         let right = 1.0 + 0.01 * step as f32;
         let bounds = Bounds { min: center + vec3(-1.0, -1.6, -1.0), max: center + vec3(right, 1.6, 1.0) };
         darkness(&scene, light, bounds, (0..60).map(|i| center + vec3(3.0, i as f32 * 0.05 - 2.0, 0.5)))
     };
-    let steps: Vec<_> = (0..40).map(shares).collect();
+    let steps: Vec<_> = (0..40).map(fractions).collect();
     let change = |pair: &[Vec<f32>]| {
         let changes = pair[0].iter().zip(&pair[1]).map(|(before, after)| (before - after).abs());
         changes.fold(0.0, f32::max)
@@ -545,7 +545,7 @@ fn sky_lights_the_top_of_smoke_and_not_its_inside() {
     scene.lights = Vec::new();
     scene.settings.soft_scatter.intensity = 0.0;
     scene.settings.ambient = Ambient { intensity: 1.0, sky_color: Vec3::ONE, ground_color: Vec3::ZERO };
-    // A dense column in the middle of the picture.
+    // A dense column in the middle of the image.
     let puff = |index: u32| Particle {
         position: vec3(0.1 * (index % 3) as f32, 0.15 * (index / 3) as f32 - 1.0, -5.0),
         radius: 0.4,
@@ -554,7 +554,7 @@ fn sky_lights_the_top_of_smoke_and_not_its_inside() {
     };
     scene.particles = (0..42).map(puff).collect();
     scene.settings.shadow.density = 4.0;
-    let row = |picture: &Image<Vec4>, y: i32| (76..84).map(|x| picture.load(glam::IVec2::new(x, y)).x).sum::<f32>();
+    let row = |image: &Image<Vec4>, y: i32| (76..84).map(|x| image.load(glam::IVec2::new(x, y)).x).sum::<f32>();
     let shaded = drawn(&scene);
     scene.settings.shadow.by_depth = false;
     let open = drawn(&scene);
@@ -569,9 +569,9 @@ fn smoke_under_a_roof_is_dark() {
     let mut scene = under_a_roof();
     scene.settings.soft_scatter.intensity = 0.0;
     scene.wall_everywhere = false;
-    let light = |picture: &Image<Vec4>, left: bool| {
+    let light = |image: &Image<Vec4>, left: bool| {
         let half = |index: usize| ((index as u32 % SIZE.x) < SIZE.x / 2) == left;
-        let seen = picture.texels.iter().enumerate().filter(|(index, _)| half(*index));
+        let seen = image.texels.iter().enumerate().filter(|(index, _)| half(*index));
         seen.map(|(_, texel)| f64::from(texel.x)).sum::<f64>()
     };
     let roofed = drawn(&scene);
@@ -616,7 +616,7 @@ fn casting_shadow_first_draws_the_same_frame() {
         host.casts_first = true;
         for frame in 0..3 {
             host.draw(gpu(), &scene).unwrap();
-            assert!(host.picture(gpu()).unwrap() == alone, "frame {frame}");
+            assert!(host.image(gpu()).unwrap() == alone, "frame {frame}");
         }
         assert_eq!(host.renderer.shadowed_lights().count(), 1);
         // Commands that were dropped are recorded again.
@@ -625,7 +625,7 @@ fn casting_shadow_first_draws_the_same_frame() {
         drop(dropped);
         host.casts_first = false;
         host.draw(gpu(), &scene).unwrap();
-        assert!(host.picture(gpu()).unwrap() == alone);
+        assert!(host.image(gpu()).unwrap() == alone);
     }
 }
 

@@ -24,7 +24,7 @@ fn scene() -> TestScene {
 }
 
 fn assert_agreement(name: &str, scene: &TestScene) {
-    let on_gpu = scene.on_gpu(gpu()).picture;
+    let on_gpu = scene.on_gpu(gpu()).image;
     let on_cpu = scene.on_cpu();
     let psnr = psnr(&on_gpu, &on_cpu);
     println!("{name}: {psnr:.1} dB");
@@ -116,23 +116,23 @@ fn tiled_path_agrees_on_six_way_lighting() {
         s.accumulate.encoding = NormalEncoding::Biased;
         s.accumulate.format = AccumulationFormat::Rgba8Unorm;
     });
-    let eight = bytes.on_gpu(gpu()).picture;
+    let eight = bytes.on_gpu(gpu()).image;
     bytes.settings.accumulate.format = AccumulationFormat::Rgba16Float;
-    let apart = psnr(&eight, &bytes.on_gpu(gpu()).picture);
+    let apart = psnr(&eight, &bytes.on_gpu(gpu()).image);
     println!("8 bits against 16 bits: {apart:.1} dB");
     assert!((40.0..80.0).contains(&apart), "8 bits against 16 bits: {apart} dB");
 }
 
 #[test]
 fn six_way_lighting_does_not_change_alpha() {
-    let alpha = |picture: &Image<Vec4>| picture.texels.iter().map(|texel| texel.w).collect::<Vec<_>>();
+    let alpha = |image: &Image<Vec4>| image.texels.iter().map(|texel| texel.w).collect::<Vec<_>>();
     let six_way = scene();
     let mut normals = six_way.clone();
     normals.settings.lighting = Lighting::Normals;
-    let pictures = [&six_way, &normals].map(|scene| scene.on_gpu(gpu()).picture);
-    let apart = alpha(&pictures[0]).iter().zip(alpha(&pictures[1])).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+    let images = [&six_way, &normals].map(|scene| scene.on_gpu(gpu()).image);
+    let apart = alpha(&images[0]).iter().zip(alpha(&images[1])).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
     assert!(apart < 1.0 / 255.0, "alpha differs by {apart}");
-    assert!(psnr(&pictures[0], &pictures[1]) < 40.0, "six-way lighting has no effect");
+    assert!(psnr(&images[0], &images[1]) < 40.0, "six-way lighting has no effect");
 }
 
 /// Summed light that one sprite, rotated by `rotation` radians, shows under a directional light that comes from `side`.
@@ -157,7 +157,7 @@ fn light_from(side: Vec3, rotation: f32) -> f32 {
     scene.material.six_way = Some(six_way_of(&ball));
     scene.material.sprite = ball;
     let empty = TestScene { particles: Vec::new(), ..scene.clone() };
-    let sum = |scene: &TestScene| scene.on_gpu(gpu()).picture.texels.iter().map(|texel| texel.x).sum::<f32>();
+    let sum = |scene: &TestScene| scene.on_gpu(gpu()).image.texels.iter().map(|texel| texel.x).sum::<f32>();
     // Subtracted: the backdrop as far as the smoke hides it, which does not depend on lights.
     let dark = TestScene { lights: Vec::new(), ..scene.clone() };
     assert!(sum(&empty) > 0.0);
@@ -192,7 +192,7 @@ fn device_that_blends_only_one_target_falls_back_to_normals() {
     let six_way = scene();
     let mut normals = six_way.clone();
     normals.settings.lighting = Lighting::Normals;
-    assert_eq!(six_way.on_gpu(&gpu).picture, normals.on_gpu(&gpu).picture);
+    assert_eq!(six_way.on_gpu(&gpu).image, normals.on_gpu(&gpu).image);
 }
 
 #[test]

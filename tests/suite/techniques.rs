@@ -46,7 +46,7 @@ fn one_sprite(technique: Technique, view_depth: f32) -> TestScene {
 }
 
 fn assert_agreement(name: &str, scene: &TestScene) {
-    let psnr = psnr(&scene.on_gpu(gpu()).picture, &scene.on_cpu());
+    let psnr = psnr(&scene.on_gpu(gpu()).image, &scene.on_cpu());
     println!("{name}: {psnr:.1} dB");
     let least = if scene.settings.debug.checkerboard { MIN_PSNR_WITH_STEPS } else { MIN_PSNR };
     assert!(psnr >= least, "{name}: {psnr:.1} dB");
@@ -61,7 +61,7 @@ fn every_technique_fades_to_nothing_at_the_near_plane() {
                 scene.view.clip_from_view = directx::perspective(0.8, 16.0 / 9.0, near, 80.0);
                 scene
             };
-            let amount = |picture: &Image<Vec4>| picture.texels.iter().map(|texel| texel.x).fold(0.0, f32::max);
+            let amount = |image: &Image<Vec4>| image.texels.iter().map(|texel| texel.x).fold(0.0, f32::max);
             // Bisects for the depth at which the sprite disappears.
             let mut hidden = near - 1.5;
             let mut shown = near + 1.5;
@@ -75,8 +75,8 @@ fn every_technique_fades_to_nothing_at_the_near_plane() {
                 }
             }
             let millimetre_later = scene_at(shown + 1.0e-3);
-            for picture in [millimetre_later.on_cpu(), millimetre_later.on_gpu(gpu()).picture] {
-                let found = amount(&picture);
+            for image in [millimetre_later.on_cpu(), millimetre_later.on_gpu(gpu()).image] {
+                let found = amount(&image);
                 assert!(found < 0.02, "{}, near plane {near} m: {found} after a millimetre", technique.name());
             }
         }
@@ -149,7 +149,7 @@ fn freezing_the_animation_stops_the_noise() {
         let mut scene = scene(Technique::VolumetricSoft);
         scene.time = time;
         scene.settings.debug.freeze_animation = freeze_animation;
-        scene.on_gpu(gpu()).picture
+        scene.on_gpu(gpu()).image
     };
     assert_eq!(at(0.0, true), at(7.3, true));
     assert!(psnr(&at(0.0, false), &at(7.3, false)) < MIN_PSNR);
@@ -157,7 +157,7 @@ fn freezing_the_animation_stops_the_noise() {
     let mut scene = scene(Technique::VolumetricSoft);
     scene.settings.volumetric.scroll_speed = 0.25;
     let seconds_per_tile = scene.settings.volumetric.noise_size / 0.25;
-    let first = scene.on_gpu(gpu()).picture;
+    let first = scene.on_gpu(gpu()).image;
     scene.time += f64::from(seconds_per_tile);
-    assert!(psnr(&first, &scene.on_gpu(gpu()).picture) > 60.0);
+    assert!(psnr(&first, &scene.on_gpu(gpu()).image) > 60.0);
 }

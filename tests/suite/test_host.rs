@@ -75,7 +75,7 @@ pub struct Host {
 
 /// Image of one frame, and the renderer that drew it.
 pub struct RenderedFrame {
-    pub picture: Image<Vec4>,
+    pub image: Image<Vec4>,
     pub renderer: Renderer,
 }
 
@@ -87,7 +87,7 @@ impl TestScene {
     pub fn try_on_gpu(&self, gpu: &Headless) -> Result<RenderedFrame, Error> {
         let mut host = Host::with_shared_context(gpu, self)?;
         host.draw(gpu, self)?;
-        Ok(RenderedFrame { picture: host.picture(gpu)?, renderer: host.renderer })
+        Ok(RenderedFrame { image: host.image(gpu)?, renderer: host.renderer })
     }
 }
 
@@ -302,7 +302,7 @@ impl Host {
     }
 
     /// Reads back the color target as floats. sRGB formats are decoded to linear light.
-    pub fn picture(&self, gpu: &Headless) -> Result<Image<Vec4>, Error> {
+    pub fn image(&self, gpu: &Headless) -> Result<Image<Vec4>, Error> {
         Ok(Image { size: self.size, texels: gpu.read_rgba16float(&convert_to_rgba16float(gpu, &self.color))? })
     }
 

@@ -90,7 +90,7 @@ pub fn perspective(size: UVec2) -> Mat4 {
 
 /// A soft ball off the sprite's center. `y_down` is the convention that the sprite declares for its normals.
 pub fn ball_sprite(y_down: bool) -> Sprite {
-    let picture = image::RgbaImage::from_fn(64, 64, |x, y| {
+    let image = image::RgbaImage::from_fn(64, 64, |x, y| {
         let p = (Vec2::new(x as f32, 63.0 - y as f32) + 0.5) / 32.0 - 1.0;
         // Off-center and tilted, so that a rotated or flipped sprite looks different.
         let p = p - Vec2::new(0.1, 0.05);
@@ -99,25 +99,25 @@ pub fn ball_sprite(y_down: bool) -> Sprite {
         let channel = |value: f32| (value * 255.0).round() as u8;
         image::Rgba([channel(normal.x), channel(normal.y), channel(normal.z), channel(inside.sqrt())])
     });
-    Sprite::from_image(std::path::Path::new("ball"), &picture, SpriteLayout { y_down, ..SpriteLayout::default() })
+    Sprite::from_image(std::path::Path::new("ball"), &image, SpriteLayout { y_down, ..SpriteLayout::default() })
         .unwrap()
 }
 
 /// Detail map that bulges in the middle and moves to the upper right.
 fn ball_detail() -> Sprite {
-    let picture = image::RgbaImage::from_fn(32, 32, |x, y| {
+    let image = image::RgbaImage::from_fn(32, 32, |x, y| {
         let p = (Vec2::new(x as f32, 31.0 - y as f32) + 0.5) / 16.0 - 1.0;
         let inside = (1.0 - 1.2 * p.length_squared()).max(0.0);
         image::Rgba([(128.0 + 100.0 * inside) as u8, 168, 88, (inside * 255.0) as u8])
     });
-    Sprite::from_image(std::path::Path::new("ball.detail"), &picture, SpriteLayout::default()).unwrap()
+    Sprite::from_image(std::path::Path::new("ball.detail"), &image, SpriteLayout::default()).unwrap()
 }
 
 /// Six-way maps of a sprite: lit along its normals, a little from behind, and more strongly from the left.
 pub fn six_way_of(sprite: &Sprite) -> Sprite {
     let size = sprite.size();
     let frames = sprite.frame_count();
-    let picture = image::RgbaImage::from_fn(size, 2 * frames * size, |x, y| {
+    let image = image::RgbaImage::from_fn(size, 2 * frames * size, |x, y| {
         let texel = sprite.texel(0, y / size % frames, x, y % size);
         let normal = texel.truncate() * 2.0 - 1.0;
         let light = if y / size < frames { normal } else { normal * vec3(-1.3, -0.8, -1.0) + vec3(0.0, 0.0, 0.3) };
@@ -125,7 +125,7 @@ pub fn six_way_of(sprite: &Sprite) -> Sprite {
         image::Rgba(code.extend(texel.w).to_array().map(|channel| (channel * 255.0).round() as u8))
     });
     let layout = six_way_layout(SpriteLayout { rows: frames, ..SpriteLayout::default() });
-    Sprite::from_image(std::path::Path::new("six_way"), &picture, layout).unwrap()
+    Sprite::from_image(std::path::Path::new("six_way"), &image, layout).unwrap()
 }
 
 fn recipe_noise() -> NoiseVolume {
@@ -237,13 +237,13 @@ impl TestScene {
 
     /// Contents of the depth buffer.
     pub fn ndc_depth(&self) -> Image<f32> {
-        let mut picture = Image::new(self.view.size, if self.is_reversed() { 0.0 } else { 1.0 });
-        picture.for_each(|at, texel| {
+        let mut image = Image::new(self.view.size, if self.is_reversed() { 0.0 } else { 1.0 });
+        image.for_each(|at, texel| {
             if let Some(depth) = self.view_depth(at) {
                 *texel = self.ndc_of(depth);
             }
         });
-        picture
+        image
     }
 
     /// Contents of the linear depth target: view depth, metres.
@@ -264,7 +264,7 @@ impl TestScene {
     }
 
     pub fn try_on_cpu(&self) -> Result<Image<Vec4>, FieldError> {
-        let mut picture = Image::new(self.view.size, self.backdrop());
+        let mut image = Image::new(self.view.size, self.backdrop());
         let system = |particles, settings| haze_reference::ParticleSystem::new(particles, settings, &self.material);
         let mut systems = vec![haze_reference::ParticleSystem {
             world_from_particles: self.world_from_particles,
@@ -289,10 +289,10 @@ impl TestScene {
             up: self.up,
             debug_view: self.debug_view,
         };
-        let frame = haze_reference::PreparedFrame::new(&frame, picture.size)?;
-        frame.shade_scene(&mut picture);
-        frame.render(&mut picture);
-        Ok(picture)
+        let frame = haze_reference::PreparedFrame::new(&frame, image.size)?;
+        frame.shade_scene(&mut image);
+        frame.render(&mut image);
+        Ok(image)
     }
 }
 
@@ -301,11 +301,11 @@ pub type Change = fn(&mut TestScene);
 
 /// Both renderers draw the same, and something else after `turn_off`: `most` dB alike.
 pub fn assert_agreement_and_effect(name: &str, mut scene: TestScene, turn_off: Change, most: f32) {
-    let seen = scene.on_gpu(gpu()).picture;
+    let seen = scene.on_gpu(gpu()).image;
     let reference = scene.on_cpu();
     let same = psnr(&seen, &reference);
     turn_off(&mut scene);
-    let effect = psnr(&scene.on_gpu(gpu()).picture, &seen);
+    let effect = psnr(&scene.on_gpu(gpu()).image, &seen);
     println!("{name}: {same:.1} dB, turned off {effect:.1} dB");
     assert!(same >= MIN_PSNR, "{name}: {same:.1} dB");
     assert!(effect < most, "{name}: turned off {effect:.1} dB");

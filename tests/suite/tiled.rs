@@ -54,7 +54,7 @@ fn render_with(scene: &TestScene, path: RenderPath, cooperative: bool) -> Image<
     let mut host = Host::with_context(gpu(), &scene, Some(&CONTEXTS[usize::from(cooperative)])).unwrap();
     host.draw(gpu(), &scene).unwrap();
     gpu().check().unwrap();
-    host.picture(gpu()).unwrap()
+    host.image(gpu()).unwrap()
 }
 
 /// Asserts that both traversals agree with `raster`, and the cooperative one also with the CPU renderer.
@@ -210,12 +210,12 @@ fn tiled_path_is_deterministic_and_sorts_buffers() {
     let mut host = Host::new(gpu(), &scene).unwrap();
     for cooperative in [true, false] {
         host.renderer.context().set_cooperative_traversal(cooperative);
-        let picture = |host: &mut Host| {
+        let image = |host: &mut Host| {
             host.draw(gpu(), &scene).unwrap();
-            host.picture(gpu()).unwrap()
+            host.image(gpu()).unwrap()
         };
-        let first = picture(&mut host);
-        assert!(picture(&mut host) == first);
+        let first = image(&mut host);
+        assert!(image(&mut host) == first);
         // The GPU sorts particles from a buffer, with either traversal.
         let mut buffered = |particles: &[Particle], offset: u64| {
             let mut bytes = vec![0x7f; offset as usize];
@@ -224,7 +224,7 @@ fn tiled_path_is_deterministic_and_sorts_buffers() {
             let particles =
                 Particles::Buffer(ParticleBuffer { offset, ..ParticleBuffer::new(&buffer, particles.len() as u32) });
             host.draw_particles(gpu(), &scene, particles).unwrap();
-            host.picture(gpu()).unwrap()
+            host.image(gpu()).unwrap()
         };
         // The sort is stable: particles at the same depth keep their order.
         let mut sorted = all.clone();

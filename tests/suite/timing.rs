@@ -117,12 +117,12 @@ fn compute_passes_that_follow_each_other_are_one_in_a_frame() {
     let each = draw_and_measure(gpu, &mut host, &timing, &scene);
     let computed = pass_names(&each).into_iter().take_while(|name| *name != "host").count();
     assert!(computed >= 5, "{each:?}");
-    let picture = host.picture(gpu).unwrap();
+    let image = host.image(gpu).unwrap();
     timing.set_detail(TimingDetail::Frame);
     let times = draw_and_measure(gpu, &mut host, &timing, &scene);
     let names = pass_names(&times);
     assert_eq!((names[0], &names[1..]), ("compute", &pass_names(&each)[computed..]));
-    assert_eq!((times.discarded, host.picture(gpu).unwrap()), (0, picture));
+    assert_eq!((times.discarded, host.image(gpu).unwrap()), (0, image));
     // Drawn passes are measured by their names.
     scene.settings.path = RenderPath::Raster;
     scene.settings.accumulate.lighting_resolution = LightingResolution::Full;

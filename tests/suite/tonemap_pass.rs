@@ -20,11 +20,11 @@ fn tonemap_on_gpu(a: (&OffscreenRenderer, &Shot), b: (&OffscreenRenderer, &Shot)
     let device = &gpu().device;
     let format = wgpu::TextureFormat::Rgba8Unorm;
     let tonemap_pass = TonemapPass::new(device, format);
-    let picture = |(renderer, shot): (&OffscreenRenderer, &Shot)| renderer.picture(shot.debug_view).unwrap().clone();
-    let tonemap_bindings = tonemap_pass.bind(device, &picture(a), &picture(b));
-    let place = UVec2::new(13, 7);
-    let screen = gpu().target("screen", SIZE + 2 * place, format);
-    let origin = place.as_vec2();
+    let image = |(renderer, shot): (&OffscreenRenderer, &Shot)| renderer.image(shot.debug_view).unwrap().clone();
+    let tonemap_bindings = tonemap_pass.bind(device, &image(a), &image(b));
+    let offset = UVec2::new(13, 7);
+    let screen = gpu().target("screen", SIZE + 2 * offset, format);
+    let origin = offset.as_vec2();
     let size = SIZE.as_vec2();
     let uniform = TonemapUniform { origin, size, ..shown }.with_transforms([a.1, b.1].map(display_transform));
     tonemap_pass.prepare(&gpu().queue, &tonemap_bindings, &uniform);
@@ -41,13 +41,13 @@ fn tonemap_on_gpu(a: (&OffscreenRenderer, &Shot), b: (&OffscreenRenderer, &Shot)
             ..Default::default()
         });
         pass.set_viewport(origin.x, origin.y, size.x, size.y, 0.0, 1.0);
-        pass.set_scissor_rect(place.x, place.y, SIZE.x, SIZE.y);
+        pass.set_scissor_rect(offset.x, offset.y, SIZE.x, SIZE.y);
         tonemap_pass.record(&mut pass, &tonemap_bindings);
     }
     gpu().submit(encoder).unwrap();
     let whole = gpu().read_rgba16float(&convert_to_rgba16float(gpu(), &screen)).unwrap();
     let width = screen.width();
-    let inside = (0..SIZE.y).flat_map(|y| (0..SIZE.x).map(move |x| ((y + place.y) * width + x + place.x) as usize));
+    let inside = (0..SIZE.y).flat_map(|y| (0..SIZE.x).map(move |x| ((y + offset.y) * width + x + offset.x) as usize));
     inside.map(|index| whole[index]).collect()
 }
 

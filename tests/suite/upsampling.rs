@@ -48,8 +48,8 @@ fn has_edges(shot: &Shot) -> bool {
 
 /// PSNR of the pixels at edges, dB, and the largest error of a channel among them, sRGB 0..1.
 fn error_at_edges(reduced: &Image<Vec4>, full: &Image<Vec4>, edges: &[bool]) -> (f32, f32) {
-    let at_edges = |picture: &Image<Vec4>| {
-        let texels: Vec<Vec4> = picture.texels.iter().zip(edges).filter(|(_, edge)| **edge).map(|(t, _)| *t).collect();
+    let at_edges = |image: &Image<Vec4>| {
+        let texels: Vec<Vec4> = image.texels.iter().zip(edges).filter(|(_, edge)| **edge).map(|(t, _)| *t).collect();
         Image { size: UVec2::new(texels.len() as u32, 1), texels }
     };
     let reduced = at_edges(reduced);
@@ -111,7 +111,7 @@ fn lighting_at_target_resolution_stays_close_to_full_resolution() {
         assert!(lit(1, LightingResolution::Target) == lit(1, LightingResolution::Full));
         // The reduced target alone is at 36 to 80 dB. The worst presets here are `steam_vent`, 61.9 and 57.9 dB, and
         // `wildfire_sky`, whose backlight ramp is steep where grain tilts normals. The others are at 66 and 61 dB or more.
-        // On OpenGL, `wildfire_sky` is at 59.1 dB in place of 63.3 at scale 2. The likely cause, which was not traced: its smoke
+        // On OpenGL, `wildfire_sky` is at 59.1 dB instead of 63.3 at scale 2. The likely cause, which was not traced: its smoke
         // is far away, where OpenGL's depth buffers are coarser.
         let coarser = if preset.name == "wildfire_sky" && is_opengl() { 2.0 } else { 0.0 };
         for (scale, least) in [(2, 60.0 - coarser), (4, 56.0 - coarser)] {
@@ -123,9 +123,9 @@ fn lighting_at_target_resolution_stays_close_to_full_resolution() {
     }
 }
 
-/// The picture as a screen shows it: nothing is brighter than white.
-fn clipped(picture: &Image<Vec4>) -> Image<Vec4> {
-    Image { size: picture.size, texels: picture.texels.iter().map(|t| t.clamp(Vec4::ZERO, Vec4::ONE)).collect() }
+/// The image as a screen shows it: nothing is brighter than white.
+fn clipped(image: &Image<Vec4>) -> Image<Vec4> {
+    Image { size: image.size, texels: image.texels.iter().map(|t| t.clamp(Vec4::ZERO, Vec4::ONE)).collect() }
 }
 
 #[test]

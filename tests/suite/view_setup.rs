@@ -22,11 +22,11 @@ fn camera() -> Mat4 {
 
 /// Sprite with one normal and alpha 1 everywhere, except for a transparent border of one texel.
 fn flat_sprite() -> Sprite {
-    let picture = image::RgbaImage::from_fn(64, 64, |x, y| {
+    let image = image::RgbaImage::from_fn(64, 64, |x, y| {
         let inside = (1..63).contains(&x) && (1..63).contains(&y);
         image::Rgba([128, 128, 255, if inside { 255 } else { 0 }])
     });
-    Sprite::from_image("flat".as_ref(), &picture, SpriteLayout::default()).unwrap()
+    Sprite::from_image("flat".as_ref(), &image, SpriteLayout::default()).unwrap()
 }
 
 /// View depth of the sheet, metres. The sheet is in front of everything in the scene.
@@ -72,8 +72,8 @@ fn point_behind(scene: &TestScene, at: UVec2, view_depth: f32) -> Vec3 {
 /// Calls `check` with the view-space point and the light of every pixel of the sheet, for both renderers. Pixels close
 /// to the border of the sheet are left out.
 fn check_sheet(scene: &TestScene, mut check: impl FnMut(Vec3, f32)) {
-    for picture in [scene.on_cpu(), scene.on_gpu(gpu()).picture] {
-        for (index, texel) in (0..).zip(&picture.texels) {
+    for image in [scene.on_cpu(), scene.on_gpu(gpu()).image] {
+        for (index, texel) in (0..).zip(&image.texels) {
             let point = point_behind(scene, UVec2::new(index % SIZE.x, index / SIZE.x), SHEET);
             if point.xy().abs().max_element() < 0.9 * HALF {
                 check(point, texel.x);
@@ -105,13 +105,13 @@ fn spot_light_falls_from_full_at_the_inner_angle_to_zero_at_the_outer_angle() {
     let mut seen = [0; 3];
     check_sheet(&sheet(&[spot]), |point, light| {
         let cos = (point - spot.position).normalize().dot(spot.direction.normalize());
-        let share = light / whole[index];
+        let fraction = light / whole[index];
         // Quadratic in the cosine: halfway between the angles' cosines, a quarter of the light is left.
         let law = ((cos - outer) / (inner - outer)).clamp(0.0, 1.0).powi(2);
         // Both images are f16: two roundings of 2^-11.
         assert!(
-            (share - law).abs() < 1.5e-3,
-            "{share} of the light at {point}, {} degrees off the axis",
+            (fraction - law).abs() < 1.5e-3,
+            "{fraction} of the light at {point}, {} degrees off the axis",
             cos.acos().to_degrees()
         );
         index += 1;
@@ -124,7 +124,7 @@ fn spot_light_falls_from_full_at_the_inner_angle_to_zero_at_the_outer_angle() {
 fn point_light_is_zero_beyond_its_range() {
     // (edge or corner of the sheet, offset of the light from there): about 1 m from edges, a corner and both faces, and
     // on the sheet.
-    let places = [
+    let positions = [
         (Vec3::X, Vec3::X),
         (Vec3::NEG_X, Vec3::NEG_X),
         (Vec3::Y, Vec3::Y),
@@ -134,7 +134,7 @@ fn point_light_is_zero_beyond_its_range() {
         (Vec3::ZERO, Vec3::NEG_Z),
         (Vec3::ZERO, Vec3::ZERO),
     ];
-    for (edge, off) in places {
+    for (edge, off) in positions {
         let position = vec3(0.0, 0.0, -SHEET) + edge * HALF + off;
         for range in [0.95, 1.3] {
             let light = Light { position, range, intensity: 1.0e4, radius: 1.0, ..Light::default() };
@@ -182,8 +182,8 @@ fn spherical_harmonics_match_a_quadratic_ramp_for_every_light_direction() {
         // Texels of the ramp are f16: an error of half of 2^-10 between 1 and 2. On the GPU, normals and the image are
         // f16 too.
         let cpu = harmonics.on_cpu();
-        let gpu = harmonics.on_gpu(gpu()).picture;
-        let found = [&cpu, &gpu].map(|picture| largest_difference(picture, &ramp));
+        let gpu = harmonics.on_gpu(gpu()).image;
+        let found = [&cpu, &gpu].map(|image| largest_difference(image, &ramp));
         println!("{direction}: {found:?}");
         assert!(found[0] < 5e-4 && found[1] < 4e-3, "{direction}: {found:?}");
         // Mutant: light from the opposite side.
@@ -231,7 +231,7 @@ fn sprites_are_drawn_in_the_order_of_a_plain_depth_sort() {
     scene.bounds = Some(bounds);
     let mut host = Host::with_shared_context(gpu(), &scene).unwrap();
     host.draw(gpu(), &scene).unwrap();
-    let sorted_by_renderer = host.picture(gpu()).unwrap();
+    let sorted_by_renderer = host.image(gpu()).unwrap();
     // Particles in a buffer are drawn in their given order.
     let depth = |particle: &Particle| -(scene.view.view_from_world * particle.position.extend(1.0)).z;
     let mut sorted = scene.particles.clone();
@@ -239,7 +239,7 @@ fn sprites_are_drawn_in_the_order_of_a_plain_depth_sort() {
     assert_ne!(sorted, scene.particles);
     let mut in_order = |particles: &[Particle]| {
         host.draw_buffer(gpu(), &scene, particles).unwrap();
-        host.picture(gpu()).unwrap()
+        host.image(gpu()).unwrap()
     };
     assert!(in_order(&sorted) == sorted_by_renderer, "the renderer did not sort back to front");
     sorted.reverse();
@@ -263,8 +263,8 @@ fn draws_sprite(scene: &mut TestScene, host: &mut Host, (near, far): (f32, f32),
     scene.particles = vec![Particle { position, radius, rotation: TURN, ..Particle::default() }];
     host.draw(gpu(), scene).unwrap();
     let mut any = false;
-    for (renderer, picture) in [("CPU", scene.on_cpu()), ("GPU", host.picture(gpu()).unwrap())] {
-        for (index, texel) in (0..).zip(&picture.texels) {
+    for (renderer, image) in [("CPU", scene.on_cpu()), ("GPU", host.image(gpu()).unwrap())] {
+        for (index, texel) in (0..).zip(&image.texels) {
             let at = UVec2::new(index % SIZE.x, index / SIZE.x);
             let offset = (point_behind(scene, at, -center.z) - center).xy();
             let local = Vec2::from_angle(-TURN).rotate(offset).abs().max_element() / radius;

@@ -126,11 +126,11 @@ pub struct SmokeParticle {
     pub radius: f32,
     /// Rotation on the screen, radians, counter-clockwise.
     pub rotation: f32,
-    /// Share of the background that the puff hides, 0 to 1; larger values are clamped. 0 draws nothing.
+    /// Fraction of the background that the puff hides, 0 to 1; larger values are clamped. 0 draws nothing.
     pub amount: f32,
     /// Frame of the sprite's flipbook. Wraps around; a fraction blends with the next frame.
     pub frame: f32,
-    /// Share of the puff's life that has passed, 0 to 1. Only fire and color by age read it.
+    /// Fraction of the puff's life that has passed, 0 to 1. Only fire and color by age read it.
     pub age: f32,
     /// Velocity in the entity's local space, metres per second. Only presets with `sprite.stretch` above 0 read it.
     pub velocity: Vec3,
@@ -189,7 +189,7 @@ impl SmokeParticle {
 
     fn to_haze(self) -> haze::Particle {
         let Self { position, radius, rotation, amount, frame, age, velocity, tint, heat } = self;
-        let share = |value: f32| (value.clamp(0.0, 1.0) * 255.0).round() as u8;
+        let fraction = |value: f32| (value.clamp(0.0, 1.0) * 255.0).round() as u8;
         haze::Particle {
             position: convert::vec3(position),
             radius,
@@ -198,8 +198,8 @@ impl SmokeParticle {
             frame,
             age,
             velocity: convert::vec3(velocity),
-            tint: [tint.red, tint.green, tint.blue].map(share),
-            heat: share(heat),
+            tint: [tint.red, tint.green, tint.blue].map(fraction),
+            heat: fraction(heat),
         }
     }
 }

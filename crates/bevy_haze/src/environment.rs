@@ -70,9 +70,9 @@ struct Probe {
 impl Probe {
     /// Weight at a point of the world, 0 to 1. Formula: `light_probe.wesl` of `bevy_pbr`.
     fn weight(&self, point: Vec3) -> f32 {
-        let place = self.probe_from_world.transform_point3(point);
+        let position = self.probe_from_world.transform_point3(point);
         let falloff = self.falloff.max(Vec3::splat(1.0e-4));
-        let weight = ((Vec3::ONE - 2.0 * place.abs()) / (2.0 * falloff)).min_element().clamp(0.0, 1.0);
+        let weight = ((Vec3::ONE - 2.0 * position.abs()) / (2.0 * falloff)).min_element().clamp(0.0, 1.0);
         if weight.is_finite() { weight } else { 0.0 }
     }
 }

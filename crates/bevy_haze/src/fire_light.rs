@@ -10,7 +10,7 @@ use crate::animation::{SmokeAnimation, SystemState};
 use crate::asset::{SmokeAsset, SmokeSystem};
 use crate::component::{Smoke, SmokeClock, SmokeParticles};
 
-/// Point light that follows the fire of the smoke on its parent entity: its place, color, brightness and flicker. It lights
+/// Point light that follows the fire of the smoke on its parent entity: its position, color, brightness and flicker. It lights
 /// meshes and smoke; without it, a fire lights smoke alone.
 ///
 /// The plugin sets color, intensity, range and radius of the [`PointLight`] and the translation of the [`Transform`]; all

@@ -63,15 +63,15 @@ impl ShadowViews<'_, '_> {
         let faces = self.faces_by_light();
         let shadow = |(index, light): (usize, &SceneLight)| {
             let entity = light.entity;
-            let place = |list: &[Entity]| list.iter().position(|listed| *listed == entity);
+            let position = |list: &[Entity]| list.iter().position(|listed| *listed == entity);
             let (texture, first_layer, clip_from_world) = if self.suns.contains(entity) {
                 let (first_layer, cascades) = self.cascades(entity, view_lights)?;
                 (&bindings.directional_light_depth_texture, first_layer, cascades)
-            } else if let Some(place) = place(&spots) {
-                let first_layer = (layers + place as u32).checked_sub(spots.len() as u32)?;
+            } else if let Some(position) = position(&spots) {
+                let first_layer = (layers + position as u32).checked_sub(spots.len() as u32)?;
                 (&bindings.directional_light_depth_texture, first_layer, faces.get(&entity)?.clone())
             } else {
-                let first_layer = place(&cubes)? as u32 * 6;
+                let first_layer = position(&cubes)? as u32 * 6;
                 (&bindings.point_light_depth_texture, first_layer, faces.get(&entity)?.clone())
             };
             let last = first_layer + clip_from_world.len() as u32;

@@ -48,7 +48,7 @@ pub struct Drag {
     /// Last pointer x, points.
     pub x: f32,
     /// Position of the lead before snapping and clamping.
-    pub place: f32,
+    pub position: f32,
     /// Stops and selection when the drag began, including any stop that the drag added.
     pub from: Selected,
     /// Stops and selection before the drag, without any added stop. Escape restores them.

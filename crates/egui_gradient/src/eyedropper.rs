@@ -101,11 +101,10 @@ impl Eyedropper {
         let painter = ui.ctx().layer_painter(response.layer_id);
         let [width, height] = screenshot.size;
         if width.max(height) <= ui.input(|input| input.max_texture_side) {
-            let picture =
-                ui.ctx().load_texture_cached("eyedropper", id, Arc::clone(screenshot), TextureOptions::NEAREST);
+            let image = ui.ctx().load_texture_cached("eyedropper", id, Arc::clone(screenshot), TextureOptions::NEAREST);
             let size = vec2(width as f32, height as f32) / ui.pixels_per_point();
             let all = Rect::from_min_max(Pos2::ZERO, Pos2::new(1.0, 1.0));
-            painter.image(picture.id(), Rect::from_min_size(Pos2::ZERO, size), all, Color32::WHITE);
+            painter.image(image.id(), Rect::from_min_size(Pos2::ZERO, size), all, Color32::WHITE);
         }
         for (width, color) in [(3.0, Color32::BLACK), (1.0, Color32::WHITE)] {
             painter.line(self.stroke.clone(), Stroke::new(width, color));

@@ -35,9 +35,9 @@ pub fn show(ui: &mut Ui, context: &mut EditContext<'_>, options: &DisplayOptions
     let pointed_at = strip_input(ui, context, strip, &gradient);
     middles(ui, context, strip, &gradient);
     ticks(ui, context.stops, strip);
-    for &(place, color) in options.marks {
+    for &(position, color) in options.marks {
         for (width, color) in [(4.0, Color32::BLACK), (2.0, color)] {
-            ui.painter().vline(strip.left() + place * strip.width(), strip.y_range(), Stroke::new(width, color));
+            ui.painter().vline(strip.left() + position * strip.width(), strip.y_range(), Stroke::new(width, color));
         }
     }
     let stop = handles::show(ui, context, strip, lane);
@@ -60,8 +60,8 @@ fn add(context: &mut EditContext<'_>, gradient: &Gradient, at: f32, drag: Option
     context.edit("add a stop", |stops, selection| {
         *selection = Selection::one(add_stop(stops, at, color));
     });
-    if let Some((x, place)) = drag {
-        handles::begin_drag(context, x, place, before, true);
+    if let Some((x, position)) = drag {
+        handles::begin_drag(context, x, position, before, true);
     }
     context.requests_focus = true;
 }
@@ -114,14 +114,14 @@ fn strip_input(ui: &Ui, context: &mut EditContext<'_>, strip: Rect, gradient: &G
     let stroke =
         if response.has_focus() { ui.visuals().selection.stroke } else { Stroke::new(1.0, visuals.fg_stroke.color) };
     ui.painter().rect_stroke(strip, 0.0, stroke, StrokeKind::Outside);
-    let place = |x: f32| strip_position(strip, x).clamp(0.0, 1.0);
+    let position = |x: f32| strip_position(strip, x).clamp(0.0, 1.0);
     let snap = context.editor.snap;
     let origin = ui.input(|input| input.pointer.press_origin());
     let added = if response.drag_started() {
-        origin.map(|origin| place(origin.x))
+        origin.map(|origin| position(origin.x))
     } else if response.clicked() {
         // A click by keyboard has no position.
-        let by_pointer = response.interact_pointer_pos().map(|at| place(at.x));
+        let by_pointer = response.interact_pointer_pos().map(|at| position(at.x));
         Some(
             by_pointer
                 .unwrap_or_else(|| stop_operations::insertion_position(context.stops, context.editor.selection.lead())),
@@ -129,14 +129,14 @@ fn strip_input(ui: &Ui, context: &mut EditContext<'_>, strip: Rect, gradient: &G
     } else {
         None
     };
-    if let Some(place) = added {
-        let at = stop_operations::snap_to_parts(place, snap.now(ui));
-        add(context, gradient, at, origin.filter(|_| response.drag_started()).map(|origin| (origin.x, place)));
+    if let Some(position) = added {
+        let at = stop_operations::snap_to_parts(position, snap.now(ui));
+        add(context, gradient, at, origin.filter(|_| response.drag_started()).map(|origin| (origin.x, position)));
     }
     let hovered = response.hover_pos().filter(|_| context.editor.dragged.is_none())?;
     ui.set_cursor_icon(CursorIcon::Crosshair);
     response.on_hover_text_at_pointer("Click or drag to add a stop with this color. Ctrl snaps");
-    let at = place(hovered.x);
+    let at = position(hovered.x);
     let color = color_at(gradient, at);
     readout(ui, hovered.x, strip, color32(color), format!("{at:.4}  {}", String::from(color)));
     Some(at)

@@ -18,8 +18,8 @@ pub fn spread(wanted: &[f32], width: f32, gap: f32) -> Vec<f32> {
     // After subtracting index times gap, positions only have to be sorted: the least-squares solution by the pool
     // adjacent violators algorithm replaces unsorted runs by their mean.
     let mut runs: Vec<(f32, usize)> = Vec::new();
-    for (index, place) in wanted.iter().enumerate() {
-        let mut run = (place - index as f32 * gap, 1);
+    for (index, position) in wanted.iter().enumerate() {
+        let mut run = (position - index as f32 * gap, 1);
         while let Some(before) = runs.pop_if(|before| before.0 > run.0) {
             let count = before.1 + run.1;
             run = ((before.0 * before.1 as f32 + run.0 * run.1 as f32) / count as f32, count);
@@ -27,8 +27,9 @@ pub fn spread(wanted: &[f32], width: f32, gap: f32) -> Vec<f32> {
         runs.push(run);
     }
     let most = (width - wanted.len().saturating_sub(1) as f32 * gap).max(0.0);
-    let places = runs.into_iter().flat_map(|(place, count)| std::iter::repeat_n(place.clamp(0.0, most), count));
-    places.enumerate().map(|(index, place)| place + index as f32 * gap).collect()
+    let positions =
+        runs.into_iter().flat_map(|(position, count)| std::iter::repeat_n(position.clamp(0.0, most), count));
+    positions.enumerate().map(|(index, position)| position + index as f32 * gap).collect()
 }
 
 #[cfg(test)]
@@ -61,10 +62,10 @@ mod tests {
         #[test]
         fn handles_are_at_least_a_gap_apart(mut wanted in prop::collection::vec(0.0f32..=200.0, 1..20)) {
             wanted.sort_by(f32::total_cmp);
-            let places = spread(&wanted, 200.0, 10.0);
-            prop_assert_eq!(places.len(), wanted.len());
-            prop_assert!(places.windows(2).all(|pair| pair[1] - pair[0] > 9.99));
-            prop_assert!(places[0] >= 0.0 && places[places.len() - 1] <= 200.01);
+            let positions = spread(&wanted, 200.0, 10.0);
+            prop_assert_eq!(positions.len(), wanted.len());
+            prop_assert!(positions.windows(2).all(|pair| pair[1] - pair[0] > 9.99));
+            prop_assert!(positions[0] >= 0.0 && positions[positions.len() - 1] <= 200.01);
         }
     }
 }

@@ -62,7 +62,7 @@ fn lane_input(ui: &Ui, context: &mut EditContext<'_>, lane: Rect) {
         context.editor.selection =
             if from < to { Selection::between(first, last) } else { Selection::between(last, first) };
     }
-    let x = |share: f32| lane.left() + share.clamp(0.0, 1.0) * lane.width();
+    let x = |fraction: f32| lane.left() + fraction.clamp(0.0, 1.0) * lane.width();
     let band = Rect::from_x_y_ranges(x(from.min(to))..=x(from.max(to)), lane.y_range());
     ui.painter().rect_filled(band, 0.0, ui.visuals().selection.bg_fill.gamma_multiply(0.5));
 }
@@ -82,15 +82,15 @@ fn show_handles(ui: &Ui, context: &mut EditContext<'_>, strip: Rect, lane: Rect)
     let middle = context.editor.cursor.unwrap_or(context.editor.selection.lead());
     let shown = handle_layout::visible_handles(context.stops.len(), middle, room);
     let wanted: Vec<_> = context.stops[shown.clone()].iter().map(|stop| stop.at * lane.width()).collect();
-    let places = handle_layout::spread(&wanted, lane.width(), GAP);
+    let positions = handle_layout::spread(&wanted, lane.width(), GAP);
     // State before any edit in this frame.
     let before = (context.stops.clone(), context.editor.selection.clone());
     let mut focused = None;
     let mut pointed_at = None;
     let mut drawn = Vec::new();
-    for ((index, place), wanted) in shown.zip(places).zip(wanted) {
+    for ((index, position), wanted) in shown.zip(positions).zip(wanted) {
         let stop = &before.0[index];
-        let middle = pos2(lane.left() + place, lane.bottom() - 0.5 * HANDLE.y - 2.0);
+        let middle = pos2(lane.left() + position, lane.bottom() - 0.5 * HANDLE.y - 2.0);
         let rect = Rect::from_center_size(middle, HANDLE);
         let response = ui.interact(rect.expand2(vec2(1.0, 2.0)), handle_id(ui, index), Sense::click_and_drag());
         let name = format!("stop {}", index + 1);
@@ -151,8 +151,8 @@ fn handle_pointer(ui: &Ui, context: &mut EditContext<'_>, response: &Response, i
             context.requests_focus = true;
         }
         if let Some(origin) = origin {
-            let place = before.0[index].at;
-            begin_drag(context, origin.x, place, before.clone(), !modifiers.alt);
+            let position = before.0[index].at;
+            begin_drag(context, origin.x, position, before.clone(), !modifiers.alt);
         }
     } else if response.clicked() {
         response.request_focus();
@@ -166,11 +166,11 @@ fn handle_pointer(ui: &Ui, context: &mut EditContext<'_>, response: &Response, i
     }
 }
 
-/// Begins a drag of the selected stops, with the lead at `place` and the pointer at `x`.
-pub fn begin_drag(context: &mut EditContext<'_>, x: f32, place: f32, before: Selected, alt_slows: bool) {
+/// Begins a drag of the selected stops, with the lead at `position` and the pointer at `x`.
+pub fn begin_drag(context: &mut EditContext<'_>, x: f32, position: f32, before: Selected, alt_slows: bool) {
     let from = (context.stops.clone(), context.editor.selection.clone());
     let now = context.stops.clone();
-    context.editor.dragged = Some(Drag { x, place, from, before, now, alt_slows });
+    context.editor.dragged = Some(Drag { x, position, from, before, now, alt_slows });
 }
 
 fn remove(context: &mut EditContext<'_>) {
@@ -254,7 +254,7 @@ fn update_drag(ui: &Ui, context: &mut EditContext<'_>, whole: Rect, strip: Rect)
     ui.set_cursor_icon(CursorIcon::ResizeHorizontal);
     drag.alt_slows |= !modifiers.alt;
     let is_fine = modifiers.alt && drag.alt_slows;
-    drag.place += (pointer.x - drag.x) / strip.width() * if is_fine { FINE } else { 1.0 };
+    drag.position += (pointer.x - drag.x) / strip.width() * if is_fine { FINE } else { 1.0 };
     drag.x = pointer.x;
     let (from, selection) = &drag.from;
     let is_off = pointer.y < whole.top() - OFF || pointer.y > whole.bottom() + OFF;
@@ -277,7 +277,7 @@ fn update_drag(ui: &Ui, context: &mut EditContext<'_>, whole: Rect, strip: Rect)
         // Back on the strip.
         context.editor.pending = Some(MOVE[usize::from(selection.is_many())]);
     }
-    let at = stop_operations::snap_to_parts(drag.place, context.editor.snap.with(modifiers));
+    let at = stop_operations::snap_to_parts(drag.position, context.editor.snap.with(modifiers));
     let at = if modifiers.shift { stop_operations::snap_to_stop(from, selection, at) } else { at };
     let led = context.editor.selection.lead();
     context.edit_selected(MOVE, |all, moved| {

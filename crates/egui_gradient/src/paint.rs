@@ -75,12 +75,12 @@ pub struct HandleState {
 }
 
 /// Draws a handle and a line to its stop's position.
-pub fn handle(ui: &Ui, rect: Rect, place: Pos2, color: Color32, state: HandleState) {
+pub fn handle(ui: &Ui, rect: Rect, position: Pos2, color: Color32, state: HandleState) {
     let HandleState { is_selected, is_hovered, has_focus } = state;
     let visuals = ui.visuals();
     let ink = if is_selected { visuals.selection.stroke.color } else { visuals.text_color() };
     let stroke = Stroke::new(if is_selected || is_hovered { 2.0 } else { 1.0 }, ink);
-    ui.painter().line_segment([place, pos2(rect.center().x, rect.top())], stroke);
+    ui.painter().line_segment([position, pos2(rect.center().x, rect.top())], stroke);
     if has_focus {
         ui.painter().rect_stroke(rect.expand(3.0), 3.0, Stroke::new(1.0, ink), StrokeKind::Inside);
     }

@@ -74,10 +74,10 @@ pub fn sample_colors(
         let part = pair[0].distance(pair[1]);
         let steps = (part * pixels_per_point * 2.0).ceil().max(1.0);
         for step in 0..steps as usize {
-            let share = (step as f32 + 0.5) / steps;
-            let along = (before + part * share) / length;
+            let fraction = (step as f32 + 0.5) / steps;
+            let along = (before + part * fraction) / length;
             let (sum, weight) = &mut parts[((along * PARTS as f32) as usize).min(PARTS - 1)];
-            *sum += pixel(pair[0].lerp(pair[1], share)) * part / steps;
+            *sum += pixel(pair[0].lerp(pair[1], fraction)) * part / steps;
             *weight += part / steps;
         }
         before += part;
@@ -92,7 +92,7 @@ mod tests {
     use super::*;
 
     /// Image whose red increases across and green downwards.
-    fn picture() -> ColorImage {
+    fn image() -> ColorImage {
         let pixel = |index: usize| Color32::from_rgb((index % 200) as u8, (index / 200) as u8, 9);
         ColorImage::new([200, 100], (0..20_000).map(pixel).collect())
     }
@@ -104,24 +104,24 @@ mod tests {
             (pos2(20.7, 30.2), 2.0, [41.0, 60.0]),
             (pos2(900.0, -5.0), 1.0, [199.0, 0.0]),
         ] {
-            let colors = sample_colors(&picture(), &[at, at + vec2(1.0, 1.0)], scale, SampleSize::One);
+            let colors = sample_colors(&image(), &[at, at + vec2(1.0, 1.0)], scale, SampleSize::One);
             assert_eq!(colors, [Vec3::new(expected[0], expected[1], 9.0)]);
         }
         assert!(sample_colors(&ColorImage::default(), &[pos2(1.0, 1.0)], 1.0, SampleSize::One).is_empty());
-        assert!(sample_colors(&picture(), &[], 1.0, SampleSize::One).is_empty());
+        assert!(sample_colors(&image(), &[], 1.0, SampleSize::One).is_empty());
     }
 
     #[test]
     fn larger_sample_sizes_average_pixels() {
         let at = [pos2(20.5, 30.5)];
-        let mut noisy = picture();
+        let mut noisy = image();
         noisy.pixels[30 * 200 + 20] = Color32::from_rgb(245, 30, 9);
         for (sample_size, expected) in [(SampleSize::One, 245.0), (SampleSize::Three, 45.0), (SampleSize::Five, 29.0)] {
             let taken = sample_colors(&noisy, &at, 1.0, sample_size)[0];
             assert!(taken.abs_diff_eq(Vec3::new(expected, 30.0, 9.0), 1.0e-3), "{sample_size:?}: {taken}");
         }
         // At a corner the border pixels are repeated.
-        let corner = sample_colors(&picture(), &[pos2(0.0, 0.0)], 1.0, SampleSize::Three)[0];
+        let corner = sample_colors(&image(), &[pos2(0.0, 0.0)], 1.0, SampleSize::Three)[0];
         assert!(corner.abs_diff_eq(Vec3::new(1.0 / 3.0, 1.0 / 3.0, 9.0), 1.0e-3), "{corner}");
         let sizes = [-1, 1, 1, 1].map(|by| SampleSize::Three.stepped(by));
         assert_eq!(sizes, [SampleSize::One, SampleSize::Five, SampleSize::Five, SampleSize::Five]);
@@ -132,13 +132,13 @@ mod tests {
     fn a_stroke_samples_colors_along_its_path() {
         // Positions along a stroke are measured by path length, also on the way back.
         let there = [pos2(0.0, 50.5), pos2(100.0, 50.5), pos2(180.0, 50.5)];
-        let row = sample_colors(&picture(), &there, 1.0, SampleSize::One);
+        let row = sample_colors(&image(), &there, 1.0, SampleSize::One);
         assert_eq!(row.len(), PARTS);
         for (index, color) in row.iter().enumerate() {
             let expected = (index as f32 + 0.5) / PARTS as f32 * 180.0 - 0.5;
             assert!((color.x - expected).abs() < 1.0 && (color.y - 50.0).abs() < 1.0e-3, "{index}: {color}");
         }
-        let back = sample_colors(&picture(), &[there[0], there[1], there[0]], 1.0, SampleSize::One);
+        let back = sample_colors(&image(), &[there[0], there[1], there[0]], 1.0, SampleSize::One);
         assert!((back[PARTS - 1].x - back[0].x).abs() < 1.0 && (back[PARTS / 2].x - 98.0).abs() < 3.0, "{back:?}");
     }
 }

@@ -198,9 +198,9 @@ pub fn distribute(stops: &mut [RampStop], selection: &mut Selection) {
     let (first, last) = ends(stops, indices.iter().copied());
     let (from, to) = if first < last { (first, last) } else { (0.0, 1.0) };
     let parts = indices.len().saturating_sub(1).max(1) as f32;
-    for (place, index) in indices.into_iter().enumerate() {
-        let share = place as f32 / parts;
-        stops[index].at = from * (1.0 - share) + to * share;
+    for (position, index) in indices.into_iter().enumerate() {
+        let fraction = position as f32 / parts;
+        stops[index].at = from * (1.0 - fraction) + to * fraction;
     }
     sort_selected(stops, selection);
 }
@@ -213,8 +213,8 @@ pub fn distribute_steps(stops: &mut [RampStop], selection: &mut Selection) {
     let behind = indices.last().and_then(|last| stops.get(last + 1));
     let to = behind.map_or(1.0, |behind| behind.at);
     let parts = indices.len().max(1) as f32;
-    for (place, index) in indices.into_iter().enumerate() {
-        stops[index].at = (from + (to - from) * place as f32 / parts).clamp(from, to);
+    for (position, index) in indices.into_iter().enumerate() {
+        stops[index].at = (from + (to - from) * position as f32 / parts).clamp(from, to);
     }
     sort_selected(stops, selection);
 }

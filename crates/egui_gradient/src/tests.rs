@@ -28,17 +28,17 @@ fn a_click_adds_a_stop_with_the_color_at_that_position() {
         (haze_core::formula::color::srgb_from_linear(light) * 255.0).round() as u8
     };
     click(&mut harness, at, NONE);
-    assert_eq!(places(&harness), [0.0, 0.25, 1.0]);
+    assert_eq!(positions(&harness), [0.0, 0.25, 1.0]);
     assert!(grays(&harness)[1].abs_diff(expected) <= 1 && (5..200).contains(&expected), "{expected}");
     assert_eq!((steps(&harness), harness.state().editor.state.selection.lead()), (vec!["add a stop"], 1));
     let at = on_strip(&harness, 0.62);
     click(&mut harness, at, Modifiers::COMMAND);
-    assert_eq!(places(&harness), [0.0, 0.25, 0.6, 1.0]);
+    assert_eq!(positions(&harness), [0.0, 0.25, 0.6, 1.0]);
     // A press followed by a drag adds a stop and moves it, in one step.
     let at = on_strip(&harness, 0.8);
     let width = strip(&harness).width();
     drag(&mut harness, at, 0.1 * width, NONE);
-    assert_eq!(places(&harness), [0.0, 0.25, 0.6, 0.9, 1.0]);
+    assert_eq!(positions(&harness), [0.0, 0.25, 0.6, 0.9, 1.0]);
     assert_eq!(steps(&harness).len(), 3);
 }
 
@@ -48,17 +48,17 @@ fn a_drag_is_one_step_and_can_pass_other_stops() {
     let from = handle(&harness, 1).center();
     let width = strip(&harness).width();
     drag(&mut harness, from, 0.4 * width, NONE);
-    assert_eq!((places(&harness), grays(&harness)), (vec![0.0, 0.5, 0.7, 1.0], vec![0, 20, 10, 30]));
+    assert_eq!((positions(&harness), grays(&harness)), (vec![0.0, 0.5, 0.7, 1.0], vec![0, 20, 10, 30]));
     assert!(harness.state().changes > 2, "the host sees it on its way");
     assert_eq!(steps(&harness), ["move a stop"]);
     assert_eq!(harness.state().editor.state.selection.lead(), 2);
     let from = handle(&harness, 2).center();
     drag(&mut harness, from, -0.17 * width, Modifiers::COMMAND);
-    assert_eq!(places(&harness), [0.0, 0.5, 0.5, 1.0], "Ctrl snaps");
+    assert_eq!(positions(&harness), [0.0, 0.5, 0.5, 1.0], "Ctrl snaps");
     assert_eq!(grays(&harness), [0, 20, 10, 30], "at one place it stays on its side");
     let from = handle(&harness, 2).center();
     drag(&mut harness, from, 9.0 * width, NONE);
-    assert_eq!(places(&harness), [0.0, 0.5, 1.0, 1.0]);
+    assert_eq!(positions(&harness), [0.0, 0.5, 1.0, 1.0]);
     // A click without movement is not a step.
     let count = steps(&harness).len();
     let at = handle(&harness, 0).center();
@@ -74,7 +74,7 @@ fn stops_at_one_position_have_separate_handles() {
         drag(&mut harness, from, width, NONE);
     }
     assert_eq!(grays(&harness), [1, 2, 3, 4]);
-    let at = places(&harness);
+    let at = positions(&harness);
     assert!(at[0] < 0.45 && (at[1] - 0.5).abs() < 1.0e-3 && at[2] > 0.55, "{at:?}");
 }
 
@@ -98,7 +98,7 @@ fn stops_are_edited_by_keyboard_alone() {
         (Modifiers::COMMAND, Key::ArrowLeft, 0.5),
     ] {
         key(&mut harness, pressed, modifiers);
-        assert_eq!(places(&harness)[1], expected);
+        assert_eq!(positions(&harness)[1], expected);
         assert!(has_keyboard(&harness, 1));
     }
     assert_eq!(steps(&harness).len(), 5);
@@ -111,11 +111,11 @@ fn stops_are_edited_by_keyboard_alone() {
     for _ in 0..11 {
         key(&mut harness, Key::ArrowRight, Modifiers::COMMAND);
     }
-    assert_eq!(places(&harness), [1.0, 1.0, 1.0]);
+    assert_eq!(positions(&harness), [1.0, 1.0, 1.0]);
     for _ in 0..2 {
         key(&mut harness, Key::ArrowLeft, Modifiers::COMMAND);
     }
-    assert_eq!((places(&harness), grays(&harness)), (vec![0.8, 1.0, 1.0], vec![0, 10, 20]));
+    assert_eq!((positions(&harness), grays(&harness)), (vec![0.8, 1.0, 1.0], vec![0, 10, 20]));
     key(&mut harness, Key::Delete, NONE);
     key(&mut harness, Key::Delete, NONE);
     assert_eq!(grays(&harness), [20]);
@@ -124,7 +124,7 @@ fn stops_are_edited_by_keyboard_alone() {
     harness.get_by_label("gradient: add a stop").focus();
     harness.run_steps(2);
     key(&mut harness, Key::Enter, NONE);
-    assert_eq!(places(&harness), [0.5, 1.0]);
+    assert_eq!(positions(&harness), [0.5, 1.0]);
     assert!(has_keyboard(&harness, 0));
 }
 
@@ -138,7 +138,7 @@ fn positions_and_colors_can_be_typed() {
     harness.event(Event::Text("0.125".into()));
     harness.run_steps(2);
     key(&mut harness, Key::Enter, NONE);
-    assert_eq!((places(&harness), steps(&harness)), (vec![0.0, 0.125, 1.0], vec!["move a stop"]));
+    assert_eq!((positions(&harness), steps(&harness)), (vec![0.0, 0.125, 1.0], vec!["move a stop"]));
     for (text, is_good) in [("#ff8000", true), ("orange", false)] {
         harness.get_by_role_and_label(Role::TextInput, "Color").click();
         harness.run_steps(2);
@@ -173,11 +173,11 @@ fn each_button_is_one_undo_step() {
         harness.run_steps(3);
     };
     press(&mut harness, "Flip");
-    assert_eq!((places(&harness), grays(&harness)), (vec![0.0, 0.8, 1.0], vec![20, 10, 0]));
+    assert_eq!((positions(&harness), grays(&harness)), (vec![0.0, 0.8, 1.0], vec![20, 10, 0]));
     press(&mut harness, "Distribute");
-    assert_eq!(places(&harness), [0.0, 0.5, 1.0]);
+    assert_eq!(positions(&harness), [0.0, 0.5, 1.0]);
     press(&mut harness, "Steps");
-    assert_eq!(places(&harness), [0.0, 0.333, 0.667]);
+    assert_eq!(positions(&harness), [0.0, 0.333, 0.667]);
     press(&mut harness, "Templates");
     for template in TEMPLATES {
         assert!(harness.query_by_label(&template.name.replace('_', " ")).is_some(), "{}", template.name);

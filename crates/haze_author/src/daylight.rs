@@ -10,7 +10,7 @@
 //!   keeps the zenith blue in twilight (Hulburt, "Explanation of the Brightness and Color of the Sky, Particularly the Twilight
 //!   Sky", 1953).
 //! - Adaptation of the eye: key of an automatic exposure by Krawczyk, Myszkowski and Seidel, "Perceptual Effects in Real-time
-//!   Tone Mapping", 2005. A night is dark in the picture, but not a million times darker than the day.
+//!   Tone Mapping", 2005. A night is dark in the image, but not a million times darker than the day.
 //! - Blue moonlight, as the eye sees it: Jensen et al., "Night Rendering", 2000.
 
 use std::f32::consts::PI;
@@ -93,23 +93,25 @@ const SUN_LUX: f32 = 133_300.0;
 /// Illuminance by a clear sky, lux: the first number plus the second times the root of the sine of the sun's elevation. What the
 /// table leaves beside direct sunlight is far too little for a sun at 15° to 45°: the ground would be brighter than the sky.
 const CLEAR_SKY_LUX: [f32; 2] = [800.0, 15_500.0];
-/// Color of moonlight in the picture.
+/// Color of moonlight in the image.
 const MOON_COLOR: Vec3 = Vec3::new(0.45, 0.62, 1.0);
 /// Color of the sky by moonlight, overhead and at the horizon.
 const MOON_SKY: [Vec3; 2] = [Vec3::new(0.2, 0.38, 1.0), Vec3::new(0.42, 0.55, 1.0)];
 /// Illuminance of the stars and of the air's own glow, lux.
 const STARS_LUX: f32 = 0.002;
-/// Share of the sky's light that comes from around the low sun, and counts as the sun's. Tuned by eye on the preset `column`.
+/// Fraction of the sky's light that comes from around the low sun, and counts as the sun's. Tuned by eye on the preset
+/// `column`.
 const GLOW: f32 = 0.35;
-/// Share of the light that the ground reflects: between asphalt and dry grass, slightly warm.
+/// Fraction of the light that the ground reflects: between asphalt and dry grass, slightly warm.
 const GROUND: Vec3 = Vec3::new(0.14, 0.13, 0.11);
-/// Sun's intensity in the picture at noon. It fits the exposures of the built-in presets, 0.3 to 0.8.
+/// Sun's intensity in the image at noon. It fits the exposures of the built-in presets, 0.3 to 0.8.
 const NOON: f32 = 2.5;
-/// Brightness of fill lights, as a share of the sky's. Tuned by eye on the preset `column`.
+/// Brightness of fill lights, as a fraction of the sky's. Tuned by eye on the preset `column`.
 const FILL: f32 = 0.25;
 /// Air masses of a view a little above the horizon, 7°.
 const HORIZON_MASS: f32 = 8.0;
-/// Share of skylight that was scattered more than once, by day. With it the noon sky has the colors of the preset `steam_vent`.
+/// Fraction of skylight that was scattered more than once, by day. With it the noon sky has the colors of the preset
+/// `steam_vent`.
 const SCATTERED_AGAIN: f32 = 0.2;
 
 /// Polynomials of log10(lux) over elevation ÷ 90, each with the elevation from which on it holds.
@@ -141,7 +143,7 @@ fn air_mass(elevation: f32) -> f32 {
     1.0 / (elevation.to_radians().sin() + 0.505_72 * (elevation + 6.079_95).powf(-1.6364))
 }
 
-/// Returns the share of light that a number of air masses lets through.
+/// Returns the fraction of light that a number of air masses lets through.
 fn transmission(mass: f32) -> Vec3 {
     (-(MOLECULES + OZONE + HAZE) * mass).exp()
 }
@@ -152,7 +154,7 @@ fn color_mass(mass: f32) -> f32 {
     mass / (1.0 + mass / 18.0)
 }
 
-/// Returns the color of the sky along `view` air masses, with the sun behind `sun` of them. `more`: share of light that was
+/// Returns the color of the sky along `view` air masses, with the sun behind `sun` of them. `more`: fraction of light that was
 /// scattered more than once, with the blue of molecules.
 fn sky_color(view: f32, sun: f32, more: f32) -> Vec3 {
     let depth = MOLECULES + HAZE;
@@ -213,9 +215,9 @@ fn measured(body: Body, elevation: f32) -> Measured {
     }
 }
 
-/// Returns the brightness in the picture of one lux, for eyes that are used to this light.
+/// Returns the brightness in the image of one lux, for eyes that are used to this light.
 fn adaptation(light: &Measured) -> f32 {
-    // The picture is half sky and half ground, which reflects 18 % and on average receives half of the direct light.
+    // The image is half sky and half ground, which reflects 18 % and on average receives half of the direct light.
     let seen = (0.5 * light.sky + 0.5 * 0.18 * (light.sky + 0.5 * light.direct)) / PI;
     let key = 1.03 - 2.0 / (2.0 + (seen + 1.0).log10());
     key / seen.max(f32::MIN_POSITIVE)
@@ -255,10 +257,10 @@ pub fn body_of(light: &Light) -> Body {
     if light.color.z > light.color.x { Body::Moon } else { Body::Sun }
 }
 
-/// Returns the light that reaches a place in free air: a white matte surface there that faces the light has this radiance.
-pub fn irradiance(light: &Light, place: Vec3) -> Vec3 {
+/// Returns the light that reaches a position in free air: a white matte surface there that faces the light has this radiance.
+pub fn irradiance(light: &Light, position: Vec3) -> Vec3 {
     let light = light.uniform(&glam::Mat4::IDENTITY);
-    light.color * sample_light(&light, place).attenuation
+    light.color * sample_light(&light, position).attenuation
 }
 
 /// Ratio of a sun's brightness to that of the model, within which it counts as the preset's choice. Beyond, such as for a sun of
@@ -267,9 +269,9 @@ const SCALES: std::ops::RangeInclusive<f32> = 1.0e-4..=1.0e7;
 
 /// Moves a preset's sun or moon, and gives it, the sky, the ambient light of all systems and the fill lights their colors and
 /// brightness at that time. If the sun is brighter than the model's, all are brighter by the same factor. `index`: the sun.
-/// `place`: center of the smoke, where fill lights are measured. The intensity of ambient light stays, and so do all other
+/// `position`: center of the smoke, where fill lights are measured. The intensity of ambient light stays, and so do all other
 /// lights.
-pub fn set_time(preset: &mut Preset, index: usize, body: Body, angles: Angles, place: Vec3) {
+pub fn set_time(preset: &mut Preset, index: usize, body: Body, angles: Angles, position: Vec3) {
     let Some(sun) = preset.lights.get_mut(index) else { return };
     let before = Daylight::new(body_of(sun), to_angles(sun.direction).elevation);
     let brightness = |color: Vec3, intensity: f32| luminance(color) * intensity;
@@ -293,7 +295,7 @@ pub fn set_time(preset: &mut Preset, index: usize, body: Body, angles: Angles, p
     }
     for fill in preset.lights.iter_mut().filter(|light| light.role == LightRole::Fill) {
         fill.color = sky / sky.max_element().max(f32::MIN_POSITIVE);
-        set_brightness(fill, place, FILL * scale * luminance(light.sky));
+        set_brightness(fill, position, FILL * scale * luminance(light.sky));
     }
 }
 
@@ -303,10 +305,10 @@ const MAX_COLOR: f32 = 100.0;
 /// Largest intensity of a light.
 const MAX_INTENSITY: f32 = 1.0e9;
 
-/// Gives a light the intensity with which its [`irradiance`] at a place has a luminance. A light that does not reach the place
-/// stays as it is.
-pub fn set_brightness(light: &mut Light, place: Vec3, wanted: f32) {
-    let one = luminance(irradiance(&Light { intensity: 1.0, ..*light }, place));
+/// Gives a light the intensity with which its [`irradiance`] at a position has a luminance. A light that does not reach the
+/// position stays as it is.
+pub fn set_brightness(light: &mut Light, position: Vec3, wanted: f32) {
+    let one = luminance(irradiance(&Light { intensity: 1.0, ..*light }, position));
     let intensity = wanted / one;
     if intensity.is_finite() {
         light.intensity = intensity.clamp(0.0, MAX_INTENSITY);
@@ -422,8 +424,8 @@ mod tests {
         // The sky of a day is a color and not a dark gray.
         for tenths in 150..=900 {
             let light = sun(tenths);
-            let share = luminance(light.sky) / (light.intensity * luminance(light.color));
-            assert!((0.1..0.25).contains(&share), "{tenths}: {share}");
+            let fraction = luminance(light.sky) / (light.intensity * luminance(light.color));
+            assert!((0.1..0.25).contains(&fraction), "{tenths}: {fraction}");
         }
     }
 
@@ -447,35 +449,35 @@ mod tests {
     #[test]
     fn a_time_sets_sun_sky_and_fill_and_leads_back() {
         let mut preset = Preset::load("column").unwrap();
-        let place = Vec3::new(0.5, 2.0, 0.0);
+        let position = Vec3::new(0.5, 2.0, 0.0);
         preset.lights[0] = light_of(LightKind::Directional, LightRole::Key);
         preset.lights[2].role = LightRole::Fill;
         let day = Angles { azimuth: 40.0, elevation: 30.0 };
         preset.lights[0].intensity = 0.0;
-        set_time(&mut preset, 0, Body::Sun, day, place);
+        set_time(&mut preset, 0, Body::Sun, day, position);
         // The artist's sun is twice as bright.
         preset.lights[0].intensity *= 2.0;
-        set_time(&mut preset, 0, Body::Sun, day, place);
+        set_time(&mut preset, 0, Body::Sun, day, position);
         let start = preset.clone();
         assert!((preset.lights[0].intensity / (2.0 * sun(300).intensity) - 1.0).abs() < 1e-3);
-        let fill = luminance(irradiance(&preset.lights[1], place));
-        let lamp = luminance(irradiance(&preset.lights[2], place));
+        let fill = luminance(irradiance(&preset.lights[1], position));
+        let lamp = luminance(irradiance(&preset.lights[2], position));
         assert!((fill / lamp - 1.0).abs() < 1e-3, "fill lights of every kind are equally bright: {fill} {lamp}");
         for (body, elevation) in [(Body::Sun, 2.0), (Body::Sun, -5.0), (Body::Moon, 35.0), (Body::Sun, 70.0)] {
-            set_time(&mut preset, 0, body, Angles { elevation, ..day }, place);
+            set_time(&mut preset, 0, body, Angles { elevation, ..day }, position);
             assert_eq!(body_of(&preset.lights[0]), body);
             preset.validate().unwrap();
             assert_ne!(preset.environment, start.environment);
             assert_ne!(preset.systems[0].settings.ambient.sky_color, start.systems[0].settings.ambient.sky_color);
         }
-        set_time(&mut preset, 0, Body::Sun, day, place);
+        set_time(&mut preset, 0, Body::Sun, day, position);
         assert!((preset.lights[0].intensity / start.lights[0].intensity - 1.0).abs() < 1e-2);
         assert!(preset.environment.zenith.abs_diff_eq(start.environment.zenith, 1e-2));
         let ambient = |preset: &Preset| preset.systems[0].settings.ambient.intensity.to_bits();
         assert_eq!(ambient(&preset), ambient(&start));
         // A sun without light takes the model's.
         preset.lights[0].intensity = 0.0;
-        set_time(&mut preset, 0, Body::Sun, day, place);
+        set_time(&mut preset, 0, Body::Sun, day, position);
         assert!((preset.lights[0].intensity / sun(300).intensity - 1.0).abs() < 1e-3);
     }
 }

@@ -75,12 +75,12 @@ impl NoiseRecipe {
     }
 
     fn sample(&self, voxel: UVec3) -> Vec4 {
-        let place = (voxel.as_vec3() + 0.5) / self.size as f32;
+        let position = (voxel.as_vec3() + 0.5) / self.size as f32;
         let mut sum = Vec4::ZERO;
         let mut period = self.cells;
         let mut weight = 1.0;
         for octave in 0..self.octaves {
-            let noise = tiling_noise(place * period as f32, period, self.seed.wrapping_add(octave * 7919));
+            let noise = tiling_noise(position * period as f32, period, self.seed.wrapping_add(octave * 7919));
             let gradient: Vec3 = noise.gradient * period as f32;
             sum += gradient.extend(noise.value) * weight;
             period *= 2;

@@ -31,7 +31,7 @@ fn parse_percent(text: &str) -> Result<f64, String> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Ratio {
     ratio: f64,
-    /// Half width of the 95 % confidence interval, as a share of the ratio.
+    /// Half width of the 95 % confidence interval, as a fraction of the ratio.
     uncertainty: f64,
 }
 

@@ -5,10 +5,10 @@ use image::RgbImage;
 use nv_flip::{DEFAULT_PIXELS_PER_DEGREE, FlipImageRgb8, FlipPool, flip};
 
 /// Mean FLIP, 0 to 1. (Andersson et al., "FLIP: A difference evaluator for alternating images", 2020)
-pub fn flip_of(reference: &RgbImage, picture: &RgbImage) -> f64 {
-    let [reference, picture] =
-        [reference, picture].map(|image| FlipImageRgb8::with_data(image.width(), image.height(), image.as_raw()));
-    f64::from(FlipPool::from_image(&flip(reference, picture, DEFAULT_PIXELS_PER_DEGREE)).mean())
+pub fn flip_of(reference: &RgbImage, image: &RgbImage) -> f64 {
+    let [reference, image] =
+        [reference, image].map(|rgb| FlipImageRgb8::with_data(rgb.width(), rgb.height(), rgb.as_raw()));
+    f64::from(FlipPool::from_image(&flip(reference, image, DEFAULT_PIXELS_PER_DEGREE)).mean())
 }
 
 /// Mean FLIP of many pairs, computed on all processors. After a request to stop, the others are 0.
@@ -19,11 +19,11 @@ pub fn flips(pairs: &[[&RgbImage; 2]]) -> Vec<f64> {
     std::thread::scope(|scope| {
         for (pairs, flips) in pairs.chunks(each).zip(flips.chunks_mut(each)) {
             scope.spawn(move || {
-                for ([reference, picture], flip) in pairs.iter().zip(flips) {
+                for ([reference, image], flip) in pairs.iter().zip(flips) {
                     if interrupt::is_requested() {
                         break;
                     }
-                    *flip = flip_of(reference, picture);
+                    *flip = flip_of(reference, image);
                 }
             });
         }

@@ -21,9 +21,9 @@ impl Cost {
         if times.len() % 2 == 1 { times[middle] } else { 0.5 * (times[middle - 1] + times[middle]) }
     }
 
-    /// Half the distance between the quartiles, as a share of the median; `None` for a single time.
+    /// Half the distance between the quartiles, as a fraction of the median; `None` for a single time.
     pub fn spread(&self) -> Option<f64> {
-        let at = |share: f64| self.0[((self.0.len() - 1) as f64 * share).round() as usize];
+        let at = |fraction: f64| self.0[((self.0.len() - 1) as f64 * fraction).round() as usize];
         (self.0.len() > 1).then(|| 0.5 * (at(0.75) - at(0.25)) / self.median())
     }
 }

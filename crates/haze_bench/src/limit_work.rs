@@ -251,8 +251,8 @@ fn disc(gpu: &Headless) -> wgpu::TextureView {
     let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
     let disc = texture(gpu, UVec2::splat(DISC), wgpu::TextureFormat::Rgba8Unorm, usage);
     let texel = |index: u32| {
-        let place = (UVec2::new(index % DISC, index / DISC).as_vec2() + 0.5) * (2.0 / DISC as f32) - 1.0;
-        let amount = (1.0 - place.length_squared()).max(0.0);
+        let position = (UVec2::new(index % DISC, index / DISC).as_vec2() + 0.5) * (2.0 / DISC as f32) - 1.0;
+        let amount = (1.0 - position.length_squared()).max(0.0);
         [200, 160, 120, (amount * 255.0) as u8]
     };
     let texels: Vec<u8> = (0..DISC * DISC).flat_map(texel).collect();

@@ -116,20 +116,20 @@ impl<'a> CaseBench<'a> {
         let mut least = None;
         let reference = self.reference(group)?;
         let mut running = Vec::new();
-        let mut pictures = Vec::new();
+        let mut images = Vec::new();
         for case in &group.cases {
             check_stop()?;
             match self.start_case(case, &reference)? {
-                Ok((case, picture)) => {
+                Ok((case, image)) => {
                     running.push(case);
-                    pictures.push(picture);
+                    images.push(image);
                 }
                 Err(reason) => self.skip_case(group.suite, &case.name, reason),
             }
         }
-        running.iter_mut().zip(reference.flips(&pictures)).for_each(|(case, flip)| case.quality.flip = Some(flip));
+        running.iter_mut().zip(reference.flips(&images)).for_each(|(case, flip)| case.quality.flip = Some(flip));
         check_stop()?;
-        drop((reference, pictures));
+        drop((reference, images));
         let warm_up_rounds = if self.is_software { 0 } else { WARM_UP_ROUNDS };
         for round in 0..warm_up_rounds + MAX_ROUNDS {
             let elapsed = started.elapsed();
@@ -212,8 +212,8 @@ impl<'a> CaseBench<'a> {
                 }
             }
         }
-        let (quality, picture) = reference.compare(self.gpu, &offscreen, &case.shot)?;
-        Ok(Ok((RunningCase { case, offscreen, quality, times: Vec::new(), passes: BTreeMap::new() }, picture)))
+        let (quality, image) = reference.compare(self.gpu, &offscreen, &case.shot)?;
+        Ok(Ok((RunningCase { case, offscreen, quality, times: Vec::new(), passes: BTreeMap::new() }, image)))
     }
 
     /// Draws a frame; `None` if the GPU returned no valid timestamps in [`MAX_TRIES`] frames.

@@ -19,7 +19,7 @@ const ROUNDS: u32 = 9;
 /// before, and `prepare` with and without the sort.
 pub fn rows(gpu: &Headless, group: &Group) -> Result<Vec<Row>, Error> {
     let shot = &group.reference;
-    let (Some(system), Some(pictures)) = (shot.preset.systems.first(), shot.materials.first()) else {
+    let (Some(system), Some(images)) = (shot.preset.systems.first(), shot.materials.first()) else {
         return Ok(Vec::new());
     };
     let device = &gpu.device;
@@ -32,7 +32,7 @@ pub fn rows(gpu: &Headless, group: &Group) -> Result<Vec<Row>, Error> {
         let mut settings = system.settings;
         settings.accumulate.order = order;
         let renderer = Renderer::new(&context, &RendererDescriptor::default())?;
-        let material = context.create_material(pictures)?;
+        let material = context.create_material(images)?;
         renderers.push((renderer, material, settings));
     }
     let mut times = [const { Vec::new() }; 4];

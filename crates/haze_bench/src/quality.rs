@@ -24,7 +24,7 @@ pub struct Quality {
 
 /// Full-resolution image that the images of a group are compared with.
 pub struct Reference {
-    picture: Image<Vec4>,
+    image: Image<Vec4>,
     transform: DisplayTransform,
     tonemapped: RgbImage,
     /// View depth of the scene, metres, if the device can read it back.
@@ -34,12 +34,12 @@ pub struct Reference {
 impl Reference {
     /// Reads back the image that a renderer has drawn.
     pub fn read(gpu: &Headless, renderer: &OffscreenRenderer, shot: &Shot) -> Result<Self, Error> {
-        let picture = renderer.read(gpu, shot)?;
+        let image = renderer.read(gpu, shot)?;
         let depth = match renderer.linear_depth() {
-            Some(depth) => Some(Image { size: picture.size, texels: gpu.read_r32float(depth)? }),
+            Some(depth) => Some(Image { size: image.size, texels: gpu.read_r32float(depth)? }),
             None => None,
         };
-        Ok(Self { transform: display_transform(shot), tonemapped: tonemap(&picture, shot), picture, depth })
+        Ok(Self { transform: display_transform(shot), tonemapped: tonemap(&image, shot), image, depth })
     }
 
     /// Compares another image with this one, except for FLIP, which is slow. Also returns the tonemapped image
@@ -50,18 +50,18 @@ impl Reference {
         renderer: &OffscreenRenderer,
         shot: &Shot,
     ) -> Result<(Quality, RgbImage), Error> {
-        let picture = renderer.read(gpu, shot)?;
+        let image = renderer.read(gpu, shot)?;
         let transforms = [display_transform(shot), self.transform];
-        let apart = PsnrReport::compare([&picture, &self.picture], transforms, self.depth.as_ref());
+        let apart = PsnrReport::compare([&image, &self.image], transforms, self.depth.as_ref());
         let finite = |db: f32| db.is_finite().then_some(f64::from(db));
         let quality =
             Quality { psnr_db: finite(apart.psnr), flip: None, edge_psnr_db: apart.edge_psnr.and_then(finite) };
-        Ok((quality, tonemap(&picture, shot)))
+        Ok((quality, tonemap(&image, shot)))
     }
 
     /// Returns the FLIP of tonemapped images against this one.
-    pub fn flips(&self, pictures: &[RgbImage]) -> Vec<f64> {
-        let pairs: Vec<_> = pictures.iter().map(|picture| [&self.tonemapped, picture]).collect();
+    pub fn flips(&self, images: &[RgbImage]) -> Vec<f64> {
+        let pairs: Vec<_> = images.iter().map(|image| [&self.tonemapped, image]).collect();
         flips(&pairs)
     }
 }

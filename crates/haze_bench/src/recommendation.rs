@@ -70,7 +70,7 @@ pub struct AutoCase {
     pub auto_ms: f64,
     /// Path that `auto` chose.
     pub chosen_path: String,
-    /// Loss of that path, from the better of its two measurements, against the faster path, as a share; 0 if it is the
+    /// Loss of that path, from the better of its two measurements, against the faster path, as a fraction; 0 if it is the
     /// faster one.
     pub loss: f64,
 }
@@ -120,7 +120,7 @@ pub fn recommendation(report: &Report) -> Option<String> {
     let path = best.path.as_deref()?;
     let scale = best.scale?;
     let format = best.format.as_deref()?;
-    let picture = match (best.psnr_db, best.flip) {
+    let image = match (best.psnr_db, best.flip) {
         (Some(psnr), Some(flip)) => format!("with {psnr:.0} dB PSNR and FLIP {flip:.3} against full resolution"),
         _ => "with the image of full resolution".into(),
     };
@@ -138,7 +138,7 @@ pub fn recommendation(report: &Report) -> Option<String> {
         _ => String::new(),
     };
     Some(format!(
-        "Ship {path} at 1/{scale} in {format}: at {layers:.0} layers {:.2} ms, {times:.1} times as fast as forward, {picture}{below}.",
+        "Ship {path} at 1/{scale} in {format}: at {layers:.0} layers {:.2} ms, {times:.1} times as fast as forward, {image}{below}.",
         best.gpu_ms.median
     ))
 }

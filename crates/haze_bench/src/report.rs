@@ -197,11 +197,11 @@ impl Milliseconds {
         let &min = times.first()?;
         let &max = times.last()?;
         // Interpolates linearly between the two nearest times.
-        let at = |share: f64| {
-            let place = (times.len() - 1) as f64 * share;
-            let low = times[place.floor() as usize];
-            let high = times[place.ceil() as usize];
-            low + (high - low) * place.fract()
+        let at = |fraction: f64| {
+            let position = (times.len() - 1) as f64 * fraction;
+            let low = times[position.floor() as usize];
+            let high = times[position.ceil() as usize];
+            low + (high - low) * position.fract()
         };
         Some(Self { median: at(0.5), min, max, quartiles: [at(0.25), at(0.75)] })
     }
@@ -229,7 +229,7 @@ impl Milliseconds {
         Ok(())
     }
 
-    /// Half the distance between the quartiles, as a share of the median.
+    /// Half the distance between the quartiles, as a fraction of the median.
     pub fn spread(&self) -> f64 {
         0.5 * (self.quartiles[1] - self.quartiles[0]) / self.median
     }

@@ -68,7 +68,7 @@ pub fn crowd(size: UVec2) -> Result<Shot, Error> {
 pub struct CrowdExtent {
     /// Extent relative to the image.
     pub images: f32,
-    /// Mean share of the image that a sprite of `layers` covers, without the parts outside the image.
+    /// Mean fraction of the image that a sprite of `layers` covers, without the parts outside the image.
     mean_coverage: f32,
 }
 

@@ -135,7 +135,7 @@ fn overdraw(size: UVec2, quick: bool) -> Result<Vec<Group>, Error> {
     };
     for &(count, deep, alpha, extent) in crowds {
         let shot = with_alpha(small_sprites(size, count, deep, extent)?, alpha);
-        let beyond = if extent.images > 1.0 { ", on beyond the picture" } else { "" };
+        let beyond = if extent.images > 1.0 { ", on beyond the image" } else { "" };
         groups.push(group(shot, format!("{count} small sprites, {deep} deep, of {alpha}{beyond}"), f64::from(deep)));
     }
     Ok(groups)

@@ -67,7 +67,7 @@ pub enum Recipe {
 }
 
 impl Recipe {
-    /// Extensions of the images, in place of the recipe's `KIND.json`.
+    /// Extensions of the images, instead of the recipe's `KIND.json`.
     fn extensions(&self) -> &'static [&'static str] {
         match self {
             Self::Sprite(_) => &["png", "detail.png"],
@@ -91,7 +91,7 @@ impl Recipe {
                     progress(frames);
                     Ok::<_, FieldError>(())
                 })?;
-                vec![baked.picture.into(), baked.detail.into()]
+                vec![baked.image.into(), baked.detail.into()]
             }
         })
     }
@@ -122,11 +122,11 @@ impl OverwriteArguments {
 ///
 /// # Errors
 /// Names the PNG and the ways to replace it.
-pub fn check_not_painted(picture: &Path, painted: PaintedPng) -> Result<(), Error> {
-    if painted == PaintedPng::Replace || !picture.exists() || is_baked_png(picture) {
+pub fn check_not_painted(image: &Path, painted: PaintedPng) -> Result<(), Error> {
+    if painted == PaintedPng::Replace || !image.exists() || is_baked_png(image) {
         return Ok(());
     }
-    let problem = format!("{} was painted, or changed after it was baked, and is kept", picture.display());
+    let problem = format!("{} was painted, or changed after it was baked, and is kept", image.display());
     let expected = "no such PNG, a recipe of another name, or `bake --overwrite`";
     Err(FieldError::from_problem("output", problem, expected).into())
 }
@@ -165,13 +165,12 @@ impl<'a> BakeJob<'a> {
             1 => format!("haze: baking {path}"),
             _ => format!("haze: baking {path}, frame {} of {count}", done.load(Ordering::Relaxed) + 1),
         };
-        let pictures =
-            with_changing_progress(what, || self.recipe.bake(|frames| done.store(frames, Ordering::Relaxed)))?;
+        let images = with_changing_progress(what, || self.recipe.bake(|frames| done.store(frames, Ordering::Relaxed)))?;
         // A PNG may have been painted during a long bake.
         self.outputs.iter().try_for_each(|output| check_not_painted(output, self.painted))?;
-        for (picture, output) in pictures.iter().zip(&self.outputs) {
-            with_progress(format!("haze: writing {}", output.display()), || write_baked_png(output, picture))?;
-            print_line!("{}: {}x{}", output.display(), picture.width(), picture.height())?;
+        for (image, output) in images.iter().zip(&self.outputs) {
+            with_progress(format!("haze: writing {}", output.display()), || write_baked_png(output, image))?;
+            print_line!("{}: {}x{}", output.display(), image.width(), image.height())?;
         }
         Ok(())
     }

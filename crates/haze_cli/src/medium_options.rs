@@ -26,9 +26,9 @@ pub struct MediumArguments {
 /// Single parameters of a medium.
 #[derive(Args)]
 pub struct MediumNumbers {
-    /// Share of light that is scattered, 0 to 1, instead of the medium's; one number, or red, green and blue separated
+    /// Fraction of light that is scattered, 0 to 1, instead of the medium's; one number, or red, green and blue separated
     /// by commas.
-    #[arg(long, value_name = "SHARE", value_delimiter = ',', allow_hyphen_values = true)]
+    #[arg(long, value_name = "FRACTION", value_delimiter = ',', allow_hyphen_values = true)]
     #[arg(value_parser = number(Medium::ALBEDO_RANGE))]
     albedo: Vec<f32>,
     /// Mean cosine of the scattering angle, -0.95 (backward) to 0.95 (forward), instead of the medium's.

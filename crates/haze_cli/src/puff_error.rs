@@ -21,7 +21,7 @@ pub fn print_response_error(
     shown: &ComparedImages<'_>,
     response: &Response,
 ) -> Result<(), Error> {
-    let percent = |share: f32| 100.0 * share;
+    let percent = |fraction: f32| 100.0 * fraction;
     print_line!(
         "{name}: brightness {:.1} % off on average, pixels {:.0} % off, FLIP {:.3}, at intensity {:.2}",
         percent(response.error),

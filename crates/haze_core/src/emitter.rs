@@ -49,8 +49,8 @@ settings! {
         rate: f32 = 40.0, number(0.0..=100_000.0, "1/s");
         /// Seconds of emission, from time 0. 0: emission has no beginning and no end.
         duration: f32 = 0.0, number(0.0..=3600.0, "s");
-        /// Share of the births that happen, over the emission: from its beginning, at 0, to its end after `duration`, at 1. A
-        /// blast that dies down, a chimney that swells.
+        /// Fraction of the births that happen, over the emission: from its beginning, at 0, to its end after `duration`, at 1.
+        /// A blast that dies down, a chimney that swells.
         #[cfg_attr(feature = "schema", schemars(with = "Vec<[f32; 2]>"))]
         rate_curve: Curve = Curve::constant(1.0), curve(0.0..=1.0);
         /// Seconds from the beginning of one emission to the next: puffs of a chimney, shots. At least `duration`. 0: one
@@ -58,7 +58,7 @@ settings! {
         period: f32 = 0.0, number(0.0..=3600.0, "s");
         /// Seconds that a particle lives. Higher: the smoke gets further before it disappears.
         lifetime: f32 = 6.0, number(0.01..=600.0, "s");
-        /// Random variation of the lifetime, up and down, as a share of it. At 0 the smoke ends along a line.
+        /// Random variation of the lifetime, up and down, as a fraction of it. At 0 the smoke ends along a line.
         lifetime_spread: f32 = 0.2, number(0.0..=0.95, "");
         /// Shape in which particles are born.
         shape: EmitterShape = EmitterShape::Sphere, choice;
@@ -83,7 +83,7 @@ settings! {
         /// Up direction, along which hot smoke rises and across which a disc lies; need not be unit length.
         #[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))]
         up: Vec3 = Vec3::Y, vector(-1.0e3..=1.0e3, "");
-        /// Share of their speed that particles keep when they hit the floor, three times at most: sparks, embers, hail. 0:
+        /// Fraction of their speed that particles keep when they hit the floor, three times at most: sparks, embers, hail. 0:
         /// they do not bounce.
         bounce: f32 = 0.0, number(0.0..=0.95, "");
         /// Height above the floor below which smoke turns aside: it flows along the floor, away from `position`. 0: it falls
@@ -104,11 +104,11 @@ settings! {
         /// Size of the largest swirls; there are some of half and of a quarter of it. Lower: frays the smoke. Higher: bends all
         /// of it.
         turbulence_scale: f32 = 1.5, number(0.01..=1.0e3, "m");
-        /// Strength of swirls of half the size, as a share of the strength of the larger ones. Higher: wisps. 0: only large
+        /// Strength of swirls of half the size, as a fraction of the strength of the larger ones. Higher: wisps. 0: only large
         /// billows.
         turbulence_detail: f32 = 0.6, number(0.0..=1.0, "");
-        /// Share of the smoke's mean velocity with which the swirls travel. 1: they ride with the smoke. 0: they stand, and the
-        /// smoke passes through them.
+        /// Fraction of the smoke's mean velocity with which the swirls travel. 1: they ride with the smoke. 0: they stand, and
+        /// the smoke passes through them.
         turbulence_travel: f32 = 1.0, number(0.0..=1.0, "");
         /// Turns of the swirls per second. Higher: restless smoke.
         turbulence_speed: f32 = 0.05, number(0.0..=10.0, "1/s");
@@ -149,29 +149,29 @@ settings! {
         radius_start: f32 = 0.25, number(0.0..=1.0e3, "m");
         /// Radius at death. Higher: smoke spreads wider and looks softer; cost grows with its square.
         radius_end: f32 = 1.2, number(0.0..=1.0e3, "m");
-        /// Random variation of the radius, up and down, as a share of it. Higher: less uniform puffs.
+        /// Random variation of the radius, up and down, as a fraction of it. Higher: less uniform puffs.
         radius_spread: f32 = 0.25, number(0.0..=0.95, "");
-        /// Share of the particles that are small: wisps among the puffs.
-        small_share: f32 = 0.0, number(0.0..=1.0, "");
-        /// Radius of a small particle, as a share of that of the others.
+        /// Fraction of the particles that are small: wisps among the puffs.
+        small_fraction: f32 = 0.0, number(0.0..=1.0, "");
+        /// Radius of a small particle, as a fraction of that of the others.
         small_size: f32 = 0.4, number(0.01..=1.0, "");
         /// Multiplies the radius by age. With `radius_start` and `radius_end` alike, it is the size over the life.
         #[cfg_attr(feature = "schema", schemars(with = "Vec<[f32; 2]>"))]
         size_curve: Curve = Curve::constant(1.0), curve(0.0..=10.0);
-        /// Share of the radius by which a particle is moved up, along `up`. 1: its lower edge stays where it was born while it
-        /// grows, as a flame on its wick.
+        /// Fraction of the radius by which a particle is moved up, along `up`. 1: its lower edge stays where it was born while
+        /// it grows, as a flame on its wick.
         anchor: f32 = 0.0, number(0.0..=1.0, "");
         "appearance":
-        /// Random rotation at birth, as a share of a turn. 0: upright.
+        /// Random rotation at birth, as a fraction of a turn. 0: upright.
         rotation_spread: f32 = 1.0, number(0.0..=1.0, "");
         /// Fastest spin at birth, either way; drag slows it. Normals and light turn with the sprite.
         spin: f32 = 0.6, number(0.0..=100.0, "rad/s");
-        /// Amount of a full-grown particle: share of the background that one sprite hides. A lower amount with more
+        /// Amount of a full-grown particle: fraction of the background that one sprite hides. A lower amount with more
         /// sprites is smoother.
         amount: f32 = 0.3, number(0.0..=1.0, "");
-        /// Share of the life over which a particle fades in. At 0 sprites pop in.
+        /// Fraction of the life over which a particle fades in. At 0 sprites pop in.
         fade_in: f32 = 0.12, number(0.0..=1.0, "");
-        /// Share of the life over which a particle fades out. At 0 sprites pop out; at 1 the top of the smoke is thin.
+        /// Fraction of the life over which a particle fades out. At 0 sprites pop out; at 1 the top of the smoke is thin.
         fade_out: f32 = 0.5, number(0.0..=1.0, "");
         /// Multiplies the amount by age. With `fade_in` and `fade_out` at 0, it is the amount over the life: smoke that thins
         /// and thickens again.
@@ -186,7 +186,7 @@ settings! {
         /// The other end of the particles' colors: dust of red ground in gray smoke.
         #[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))]
         other_tint: Vec3 = Vec3::ONE, color(0.0..=1.0);
-        /// Share by which the coldest particles of the same age are colder than the hottest. Higher: sooty puffs between the
+        /// Fraction by which the coldest particles of the same age are colder than the hottest. Higher: sooty puffs between the
         /// flames. Read if the system burns.
         heat_spread: f32 = 0.0, number(0.0..=1.0, "");
     }
@@ -426,7 +426,7 @@ impl Emitter {
             attractor_size,
             orbit_rate: self.orbit * TAU,
             has_flow: u32::from(has_flow),
-            small_share: self.small_share,
+            small_fraction: self.small_fraction,
             small_size: self.small_size,
             floor_margin: self.floor_margin,
             obstacle_margin: self.obstacle_margin,

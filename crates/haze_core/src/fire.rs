@@ -8,7 +8,7 @@ use crate::formula::color::luminance;
 use crate::formula::curve::smoothstep_unit;
 use crate::formula::fire::heat_at;
 use crate::formula::hash::{pcg3d, unit};
-use crate::formula::lighting::{coverage, painted_share};
+use crate::formula::lighting::{coverage, painted_fraction};
 use crate::formula::ramp::{sample_ramp, sample_ramp_2d};
 use crate::frame::{Light, LightKind, Particle};
 use crate::settings::Settings;
@@ -56,10 +56,10 @@ impl FireLight<'_> {
         let (middle, reach) = sum.extent()?;
         let area = sum.bright_area() * self.particles_per_sample as f32;
         // Flames hide each other: at most the disc that they fill shines.
-        let share = 1.0 - (-area / (reach * reach)).exp();
+        let fraction = 1.0 - (-area / (reach * reach)).exp();
         let color = sum.light / sum.weight;
         let brightest = color.max_element();
-        let brightness = brightest * fire.intensity * fire.light * share * reach * reach;
+        let brightness = brightest * fire.intensity * fire.light * fraction * reach * reach;
         let intensity = brightness * flicker(fire.flicker, FLICKER_RATE, self.time, self.seed);
         // Within the ranges of a light.
         let intensity = intensity.min(1.0e9);
@@ -85,10 +85,10 @@ const THICKNESSES: [f32; 4] = [0.25, 0.5, 0.75, 1.0];
 /// Cosine between normal and direction to the viewer in a crease, where most of the light comes from.
 const FACING: f32 = 0.35;
 
-/// Light of a particle, per share of the scene that it hides.
+/// Light of a particle, per fraction of the scene that it hides.
 fn flame_color(settings: &Settings, heat_ramp: &Ramp, fire_ramp: &Ramp, age: f32, amount: f32) -> Vec3 {
     let filter = settings.ramp_filter;
-    let heat = painted_share(sample_ramp(heat_ramp, filter, age));
+    let heat = painted_fraction(sample_ramp(heat_ramp, filter, age));
     if heat <= 0.0 {
         return Vec3::ZERO;
     }

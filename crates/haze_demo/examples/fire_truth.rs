@@ -96,12 +96,12 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// A puff at a random place of a box. `key`: hot or cold, and index.
+/// A puff at a random position of a box. `key`: hot or cold, and index.
 fn puff(key: [u32; 2], seed: u32, (center, half_extent): (Vec3, Vec3), radius: f32) -> Particle {
     let [a, b] = [0, 1].map(|more| pcg3d(UVec3::new(key[1], 2 * key[0] + more, seed)));
-    let place = vec3(unit(a.x), unit(a.y), unit(a.z)) * 2.0 - 1.0;
+    let unit_position = vec3(unit(a.x), unit(a.y), unit(a.z)) * 2.0 - 1.0;
     Particle {
-        position: center + place * half_extent,
+        position: center + unit_position * half_extent,
         radius,
         frame: (b.y % 2) as f32,
         age: 0.5,
@@ -140,7 +140,7 @@ fn emission(kind: &PuffKind, hot: &[Particle], fire: &Fire, seed: u32) -> Densit
 }
 
 /// Cold puffs for each of [`DEPTHS`]: as many as come nearest to it, and their depth. It is that of the even smoke that
-/// would let the same share of the fire's light through.
+/// would let the same fraction of the fire's light through.
 fn cold_smoke(kind: &PuffKind, hot: &[Particle], seed: u32) -> Vec<(Vec<Particle>, f32)> {
     let mut cloud = kind.single();
     cloud.particles = hot.to_vec();

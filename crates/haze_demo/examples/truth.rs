@@ -170,9 +170,9 @@ fn octave_ramp(anisotropy: f32) -> Ramp {
     let (count, half) = OCTAVES;
     let light = |depth: f32, cosine| {
         let octave = |index| {
-            let share = half.powi(index);
-            let g = anisotropy * share;
-            share * (-depth * share).exp() * henyey_greenstein(cosine, g) * (1.0 - g * g)
+            let fraction = half.powi(index);
+            let g = anisotropy * fraction;
+            fraction * (-depth * fraction).exp() * henyey_greenstein(cosine, g) * (1.0 - g * g)
         };
         (0..count).map(octave).sum::<f32>()
     };
@@ -184,7 +184,7 @@ fn write_images(folder: &Path, name: &str, drawn: &[(&str, LightImages, Image<f3
     let mut names = serde_json::Map::new();
     for (model, lights, coverage) in drawn {
         let file = format!("{name}_{model}.f32");
-        let colors = lights.iter().flat_map(|picture| &picture.texels).flat_map(Vec3::to_array);
+        let colors = lights.iter().flat_map(|image| &image.texels).flat_map(Vec3::to_array);
         let bytes: Vec<_> = colors.chain(coverage.texels.iter().copied()).flat_map(f32::to_le_bytes).collect();
         fs::write(folder.join(&file), bytes)?;
         names.insert((*model).into(), file.into());

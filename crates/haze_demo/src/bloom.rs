@@ -1,4 +1,4 @@
-//! Light that spreads around bright places, as a lens spreads it; on the CPU. `bloom_pass.rs` does so on the GPU, WGSL:
+//! Light that spreads around bright areas, as a lens spreads it; on the CPU. `bloom_pass.rs` does so on the GPU, WGSL:
 //! `bloom.wgsl`. (Pyramid after Jimenez, "Next generation post processing in Call of Duty: Advanced Warfare", 2014)
 
 use glam::{IVec2, UVec2, Vec3, Vec4, Vec4Swizzles};

@@ -1,7 +1,7 @@
 // bloom
-// What    Spreads light around bright places, as a lens does: a pyramid of ever coarser levels, added up from the coarsest.
-// Reads   a level, or the picture.
-// Writes  the level after it; on the way back the level before it, at last the picture.
+// What    Spreads light around bright areas, as a lens does: a pyramid of ever coarser levels, added up from the coarsest.
+// Reads   a level, or the image.
+// Writes  the level after it; on the way back the level before it, at last the image.
 // Blend   none; on the way back by a constant, so that no light is lost.
 // Source  Jimenez, "Next generation post processing in Call of Duty: Advanced Warfare", 2014: the pyramid.
 // Space   texels of the target.

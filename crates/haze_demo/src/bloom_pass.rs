@@ -14,10 +14,10 @@ pub struct BloomPass {
     double: wgpu::RenderPipeline,
 }
 
-/// Pyramid of a picture.
+/// Pyramid of an image.
 #[derive(Debug)]
 pub struct BloomLevels {
-    picture: wgpu::Texture,
+    image: wgpu::Texture,
     from_picture: wgpu::BindGroup,
     /// Finest first.
     levels: Vec<BloomLevel>,
@@ -99,17 +99,17 @@ impl BloomPass {
         }
     }
 
-    /// Creates the pyramid of a picture, which must be `Rgba16Float`.
-    pub fn levels(&self, picture: &wgpu::Texture) -> BloomLevels {
-        let size = UVec2::new(picture.width(), picture.height());
+    /// Creates the pyramid of an image, which must be `Rgba16Float`.
+    pub fn levels(&self, image: &wgpu::Texture) -> BloomLevels {
+        let size = UVec2::new(image.width(), image.height());
         let level = |(size, spread)| {
             let view = default_view(&texture(&self.device, "demo bloom", size, COLOR_FORMAT));
             let group = self.bind(&view);
             BloomLevel { view, group, spread }
         };
         BloomLevels {
-            picture: picture.clone(),
-            from_picture: self.bind(&default_view(picture)),
+            image: image.clone(),
+            from_picture: self.bind(&default_view(image)),
             levels: levels(size).into_iter().map(level).collect(),
         }
     }
@@ -122,9 +122,9 @@ impl BloomPass {
         })
     }
 
-    /// Adds bloom to the picture. `strength`: fraction of the light that spreads, 0..=1.
+    /// Adds bloom to the image. `strength`: fraction of the light that spreads, 0..=1.
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder, levels: &BloomLevels, strength: f32) {
-        let BloomLevels { picture, from_picture, levels } = levels;
+        let BloomLevels { image, from_picture, levels } = levels;
         let mut finer = from_picture;
         for level in levels {
             draw(encoder, &self.halve, finer, &level.view, 0.0);
@@ -135,15 +135,15 @@ impl BloomPass {
             draw(encoder, &self.double, &coarser.group, &level.view, level.spread);
         }
         if let Some(finest) = levels.first() {
-            draw(encoder, &self.double, &finest.group, &default_view(picture), strength);
+            draw(encoder, &self.double, &finest.group, &default_view(image), strength);
         }
     }
 }
 
 impl BloomLevels {
-    /// True if it is of this picture.
-    pub fn is_of(&self, picture: &wgpu::Texture) -> bool {
-        self.picture == *picture
+    /// True if it is of this image.
+    pub fn is_of(&self, image: &wgpu::Texture) -> bool {
+        self.image == *image
     }
 
     /// Textures of the levels.

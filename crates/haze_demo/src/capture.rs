@@ -38,7 +38,7 @@ pub struct CapturedFrame {
     pub scene_depth: Image<f32>,
     /// Scene color without smoke, linear HDR; at the outline of an object, that of the surfaces behind it.
     pub behind: Image<Vec4>,
-    /// Color of objects at their outlines, with their share of the pixel in alpha; 0 elsewhere.
+    /// Color of objects at their outlines, with their fraction of the pixel in alpha; 0 elsewhere.
     pub front: Image<Vec4>,
     /// Targets of the systems; `None` for systems that are out of view or use the forward path.
     pub systems: Vec<Option<ProbeTextures>>,
@@ -134,8 +134,8 @@ impl ProbeInputs {
         &self.shot
     }
 
-    /// Returns the share of a pixel that an object in front covers at its outline, 0 to 1. A probe explains the rest.
-    pub fn front_share(&self, pixel: UVec2) -> f32 {
+    /// Returns the fraction of a pixel that an object in front covers at its outline, 0 to 1. A probe explains the rest.
+    pub fn front_fraction(&self, pixel: UVec2) -> f32 {
         self.captured.front.load(pixel.as_ivec2()).w
     }
 

@@ -84,7 +84,7 @@ impl Headless {
         let errors = failures.clone();
         device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
             errors.record(match error {
-                wgpu::Error::OutOfMemory { .. } => "out of memory; a smaller picture needs less".into(),
+                wgpu::Error::OutOfMemory { .. } => "out of memory; a smaller image needs less".into(),
                 error => error.to_string(),
             });
         }));

@@ -75,7 +75,7 @@ mod tests {
 
     use super::*;
 
-    /// The scalar of a particle from the camera's place, direction and field of view, without matrices.
+    /// The scalar of a particle from the camera's position, direction and field of view, without matrices.
     fn by_hand(shot: &Shot, scalar: ParticleScalar, position: Vec3, displacement: Vec3) -> f32 {
         let camera = &shot.preset.camera;
         let forward = (camera.target - camera.position).normalize();

@@ -75,7 +75,7 @@ impl<'a> MeshCaster<'a> {
         (clip.z / clip.w).clamp(0.0, 1.0)
     }
 
-    /// Vector to view depth 1 through a place in the image, pixels.
+    /// Vector to view depth 1 through a position in the image, pixels.
     fn ray(&self, pixel: Vec2) -> Vec3 {
         self.rays.at_unit_depth(pixel / self.size)
     }

@@ -195,11 +195,11 @@ mod tests {
                 };
                 // A random point on a face of a box.
                 let b = &scene.boxes[index as usize % scene.boxes.len()];
-                let place = random(0);
+                let position = random(0);
                 let side = random(1);
                 let normal = side.signum()
                     * Vec3::select(side.abs().cmpeq(Vec3::splat(side.abs().max_element())), Vec3::ONE, Vec3::ZERO);
-                let local = Vec3::select(normal.cmpeq(Vec3::ZERO), place, normal) * b.half_size;
+                let local = Vec3::select(normal.cmpeq(Vec3::ZERO), position, normal) * b.half_size;
                 let world = b.center + b.to_world(local);
                 let normal = b.to_world(normal);
                 let pixel = WIDEST_PIXEL * unit(pcg3d(UVec3::splat(index)).x);
@@ -208,9 +208,9 @@ mod tests {
                 points += 1;
                 tested += indices(scene.occluders.at(1, world), scene.boxes.len()).count();
             }
-            let share = tested as f32 / (points * scene.boxes.len()) as f32;
-            println!("{name}: {share:.2} of the boxes are asked");
-            assert!(share < 0.4, "{name}: {share}");
+            let fraction = tested as f32 / (points * scene.boxes.len()) as f32;
+            println!("{name}: {fraction:.2} of the boxes are asked");
+            assert!(fraction < 0.4, "{name}: {fraction}");
         }
     }
 }

@@ -13,14 +13,14 @@ use haze::shader::Sources;
 use haze::{Context, Material, PathModel, Timing, read_only_depth_is_supported};
 
 /// Pipelines and materials that all [`OffscreenRenderer`](super::offscreen_renderer::OffscreenRenderer)s of a device
-/// share. A clone shares them too.
+/// fraction. A clone shares them too.
 #[derive(Clone, Debug)]
 pub struct OffscreenContext {
     pub(super) device: wgpu::Device,
     pub(super) haze: Context,
     pub(super) scene: Arc<SceneRenderer>,
     pub(super) outlines: Arc<OutlinePass>,
-    /// Compiled on first use: few pictures have bloom.
+    /// Compiled on first use: few images have bloom.
     bloom: Arc<OnceLock<BloomPass>>,
     /// Materials that existing renderers have uploaded. Shared images are uploaded once.
     materials: Arc<Mutex<Vec<Weak<UploadedMaterial>>>>,

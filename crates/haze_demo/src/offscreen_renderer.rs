@@ -82,7 +82,7 @@ struct SizedTargets {
     targets: SceneTargets,
     /// Inputs of the scene that the targets currently show.
     scene_inputs: Option<SceneInputs>,
-    pictures: [Option<wgpu::Texture>; DebugView::ALL.len()],
+    images: [Option<wgpu::Texture>; DebugView::ALL.len()],
     /// The final image before its outlines are completed.
     smoked: Option<OutlineInputs>,
     /// Of the final image, if it has bloom.
@@ -245,7 +245,7 @@ impl OffscreenRenderer {
             sized => sized.insert(SizedTargets {
                 targets: scene.targets(size),
                 scene_inputs: None,
-                pictures: Default::default(),
+                images: Default::default(),
                 smoked: None,
                 bloom: None,
             }),
@@ -321,7 +321,7 @@ impl OffscreenRenderer {
         }
         scene.shade(encoder, &sized.targets, self.renderer.scene_shadow_bind_group());
         for &stage in stages {
-            sized.pictures[stage as usize].get_or_insert_with(|| texture(device, "demo picture", size, COLOR_FORMAT));
+            sized.images[stage as usize].get_or_insert_with(|| texture(device, "demo image", size, COLOR_FORMAT));
             if stage == DebugView::Final {
                 let SizedTargets { targets, smoked, .. } = sized;
                 let outline = smoked.get_or_insert_with(|| {
@@ -336,11 +336,11 @@ impl OffscreenRenderer {
         end_part(encoder, FramePart::Scene)?;
         self.renderer.prepare(encoder, &frame)?;
         for &stage in stages {
-            let Some(picture) = &sized.pictures[stage as usize] else { continue };
+            let Some(image) = &sized.images[stage as usize] else { continue };
             // Debug views other than the final image are shown on black.
             let (view, load) = match &sized.smoked {
                 Some(outline) if stage == DebugView::Final => (outline.smoked.clone(), wgpu::LoadOp::Load),
-                _ => (default_view(picture), wgpu::LoadOp::Clear(wgpu::Color::BLACK)),
+                _ => (default_view(image), wgpu::LoadOp::Clear(wgpu::Color::BLACK)),
             };
             let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
                 label: Some("smoke"),
@@ -360,21 +360,19 @@ impl OffscreenRenderer {
             self.renderer.render_debug_view(&mut pass, stage);
         }
         end_part(encoder, FramePart::Smoke)?;
-        let picture = sized.pictures[DebugView::Final as usize].as_ref();
-        if let Some((inputs, picture)) =
-            sized.smoked.as_ref().zip(picture).filter(|_| stages.contains(&DebugView::Final))
-        {
+        let image = sized.images[DebugView::Final as usize].as_ref();
+        if let Some((inputs, image)) = sized.smoked.as_ref().zip(image).filter(|_| stages.contains(&DebugView::Final)) {
             let visible = (0..).zip(&self.materials).filter_map(|(key, _)| self.renderer.targets(key)?.smoke_depths);
             let depths = visible
                 .fold([SKY_VIEW_DEPTH, 0.0], |[nearest, farthest], [near, far]| [nearest.min(near), farthest.max(far)]);
-            outlines.record(encoder, &sized.targets, inputs, depths, &default_view(picture));
+            outlines.record(encoder, &sized.targets, inputs, depths, &default_view(image));
         }
         let strength = shot.bloom();
-        match picture.filter(|_| strength > 0.0 && stages.contains(&DebugView::Final)) {
-            Some(picture) => {
+        match image.filter(|_| strength > 0.0 && stages.contains(&DebugView::Final)) {
+            Some(image) => {
                 let bloom = self.context.bloom();
-                let held = sized.bloom.take().filter(|levels| levels.is_of(picture));
-                let levels = sized.bloom.insert(held.unwrap_or_else(|| bloom.levels(picture)));
+                let held = sized.bloom.take().filter(|levels| levels.is_of(image));
+                let levels = sized.bloom.insert(held.unwrap_or_else(|| bloom.levels(image)));
                 bloom.record(encoder, levels, strength);
             }
             None => sized.bloom = None,
@@ -411,8 +409,8 @@ impl OffscreenRenderer {
     }
 
     /// Returns the output image of a debug view as last recorded: linear HDR, `Rgba16Float`, of the shot's size.
-    pub fn picture(&self, stage: DebugView) -> Option<&wgpu::Texture> {
-        self.sized.as_ref()?.pictures[stage as usize].as_ref()
+    pub fn image(&self, stage: DebugView) -> Option<&wgpu::Texture> {
+        self.sized.as_ref()?.images[stage as usize].as_ref()
     }
 
     /// Records copies of the last frame's intermediate targets, after the frame in the same encoder. `None` if no frame
@@ -446,14 +444,14 @@ impl OffscreenRenderer {
     /// # Errors
     /// [`Error::Device`] if the device failed.
     pub fn read(&self, gpu: &Headless, shot: &Shot) -> Result<Image<Vec4>, Error> {
-        let Some(picture) = self.picture(shot.debug_view) else { return Ok(Image::new(shot.size, Vec4::W)) };
-        let size = UVec2::new(picture.width(), picture.height());
-        Ok(Image { size, texels: gpu.read_rgba16float(picture)? })
+        let Some(image) = self.image(shot.debug_view) else { return Ok(Image::new(shot.size, Vec4::W)) };
+        let size = UVec2::new(image.width(), image.height());
+        Ok(Image { size, texels: gpu.read_rgba16float(image)? })
     }
 
     /// Records a copy of the image of a debug view, to be read when the GPU is done. `None` if it was never drawn.
     pub fn read_later(&self, encoder: &mut wgpu::CommandEncoder, stage: DebugView) -> Option<PendingImage> {
-        Some(PendingImage::record(&self.context.device, encoder, self.picture(stage)?))
+        Some(PendingImage::record(&self.context.device, encoder, self.image(stage)?))
     }
 
     /// Uploads images that are not on the GPU yet.
@@ -482,6 +480,6 @@ impl SizedTargets {
         };
         let smoked = self.smoked.iter().map(|outline| outline.smoked.texture());
         let bloom = self.bloom.iter().flat_map(BloomLevels::textures);
-        self.targets.textures().chain(self.pictures.iter().flatten()).chain(smoked).chain(bloom).map(bytes).sum()
+        self.targets.textures().chain(self.images.iter().flatten()).chain(smoked).chain(bloom).map(bytes).sum()
     }
 }

@@ -42,8 +42,8 @@ impl SampleGroups {
         Self { is_front, front_depth: view_depth_from_ndc_depth(mean(true), coefficients), back: mean(false) }
     }
 
-    /// Number of samples of the object in front, as a share of the four.
-    pub fn front_share(&self) -> f32 {
+    /// Number of samples of the object in front, as a fraction of the four.
+    pub fn front_fraction(&self) -> f32 {
         0.25 * self.is_front.iter().filter(|is_front| **is_front).count() as f32
     }
 
@@ -61,7 +61,7 @@ pub(crate) struct Outlines<'a> {
     pub behind: &'a Image<Vec4>,
     /// The same with smoke, whose opacity is in alpha.
     pub smoked: &'a Image<Vec4>,
-    /// Objects in front, with their share of the pixel in alpha.
+    /// Objects in front, with their fraction of the pixel in alpha.
     pub front: &'a Image<Vec4>,
     /// Range of view depths of smoke, metres.
     pub smoke_depths: [f32; 2],

@@ -107,11 +107,11 @@ impl OutlinePass {
         targets: &SceneTargets,
         inputs: &OutlineInputs,
         depths: [f32; 2],
-        picture: &wgpu::TextureView,
+        image: &wgpu::TextureView,
     ) {
         let Some(scene) = &targets.scene_group else { return };
         self.queue.write_buffer(&inputs.uniform, 0, bytemuck::bytes_of(&SmokeUniform { depths, padding: [0.0; 2] }));
-        let mut pass = begin_pass(encoder, &[picture], wgpu::Color::BLACK, None);
+        let mut pass = begin_pass(encoder, &[image], wgpu::Color::BLACK, None);
         pass.set_bind_group(0, scene, &[]);
         pass.set_bind_group(1, &inputs.group, &[]);
         pass.set_pipeline(&self.pipeline);

@@ -56,9 +56,9 @@ impl ShownScalar {
     /// Replaces the tints of particles.
     pub(super) fn apply(&self, particles: &mut [Particle], displacements: &[Vec3], view: &View) {
         for (particle, displacement) in particles.iter_mut().zip(displacements) {
-            let share = (self.scalar.of(particle, *displacement, view) - self.low) / (self.high - self.low);
+            let fraction = (self.scalar.of(particle, *displacement, view) - self.low) / (self.high - self.low);
             // NaN becomes 0.
-            let code = (share.clamp(0.0, 1.0) * 65535.0).round() as u16;
+            let code = (fraction.clamp(0.0, 1.0) * 65535.0).round() as u16;
             let [high, low] = code.to_be_bytes();
             particle.tint = [high, low, 255];
         }

@@ -114,14 +114,14 @@ impl PuffKind {
         &self.puffs[(frame % FRAMES) as usize]
     }
 
-    /// A cloud of puffs at random places.
+    /// A cloud of puffs at random positions.
     pub fn cloud(&self, shape: CloudShape, seed: u32) -> PuffCloud<'_> {
         let puff = |index: u32| {
             let a = pcg3d(UVec3::new(index, 0, seed));
             let b = pcg3d(UVec3::new(index, 1, seed));
-            let place = vec3(unit(a.x), unit(a.y), unit(a.z)) * 2.0 - 1.0;
+            let unit_position = vec3(unit(a.x), unit(a.y), unit(a.z)) * 2.0 - 1.0;
             Particle {
-                position: place * shape.half_extent(),
+                position: unit_position * shape.half_extent(),
                 radius: 0.26 + 0.12 * unit(b.x),
                 rotation: 0.0,
                 amount: 1.0,
@@ -156,7 +156,7 @@ impl PuffKind {
         settings.accumulate.downscale = 1;
         settings.soft_scatter.intensity = 0.0;
         settings.specular_scatter.intensity = 0.0;
-        let sheet = self.recipe.bake(|_| Ok::<_, Error>(()))?.picture;
+        let sheet = self.recipe.bake(|_| Ok::<_, Error>(()))?.image;
         let assets = MaterialAssets {
             sprite: Sprite::from_image(Path::new("puff"), &sheet, self.recipe.layout())?,
             detail: None,
@@ -175,7 +175,7 @@ impl PuffKind {
         let maps = self.recipe.bake_six_way(&self.medium, self.path_trace.samples, |_, _| Ok::<_, Error>(()))?;
         let layout = six_way_layout(self.recipe.layout());
         let assets = MaterialAssets {
-            six_way: Some(Sprite::from_image(Path::new("puff"), &maps.picture, layout)?),
+            six_way: Some(Sprite::from_image(Path::new("puff"), &maps.image, layout)?),
             diffuse_ramp: diffuse.clone(),
             backlight_ramp: backlight.clone(),
             ..assets
@@ -205,10 +205,10 @@ impl PuffMaterial {
 }
 
 impl PuffCloud<'_> {
-    /// Density at a place: extinction per metre, in units of the medium's.
-    fn density(&self, place: Vec3) -> f32 {
+    /// Density at a position: extinction per metre, in units of the medium's.
+    fn density(&self, position: Vec3) -> f32 {
         let of_puff = |puff: &Particle| {
-            let local = (place - puff.position) / puff.radius;
+            let local = (position - puff.position) / puff.radius;
             let is_inside = local.abs().max_element() < 1.0;
             // Divided by the radius, so that the optical depth through a puff does not depend on its size.
             if is_inside { self.kind.puff(puff.frame as u32).density(local) / puff.radius } else { 0.0 }
@@ -216,12 +216,12 @@ impl PuffCloud<'_> {
         self.particles.iter().map(of_puff).sum()
     }
 
-    /// Share of a light that passes straight through the cloud to a place, marched through all densities.
-    pub fn transmittance(&self, place: Vec3, to_light: Vec3) -> f32 {
+    /// Fraction of a light that passes straight through the cloud to a position, marched through all densities.
+    pub fn transmittance(&self, position: Vec3, to_light: Vec3) -> f32 {
         // The cloud is in a cube with sides of 2 m.
         const STEP: f32 = 0.01;
         let steps = 0..(6.0 / STEP) as u32;
-        let depth: f32 = steps.map(|step| self.density(place + to_light * ((step as f32 + 0.5) * STEP))).sum();
+        let depth: f32 = steps.map(|step| self.density(position + to_light * ((step as f32 + 0.5) * STEP))).sum();
         (-depth * STEP * self.kind.medium.density).exp()
     }
 
@@ -257,23 +257,23 @@ impl PuffCloud<'_> {
     pub fn drawn(&self, lights: &[Vec3], material: &PuffMaterial) -> Result<LightImages, Error> {
         let size = UVec2::splat(self.kind.path_trace.size);
         let of_light = |to_light: &Vec3| {
-            let mut picture = Image::new(size, Vec4::ZERO);
-            self.prepared(*to_light, material, |frame| frame.render(&mut picture))?;
-            Ok(Image { size, texels: picture.texels.iter().map(|texel| texel.xyz()).collect() })
+            let mut image = Image::new(size, Vec4::ZERO);
+            self.prepared(*to_light, material, |frame| frame.render(&mut image))?;
+            Ok(Image { size, texels: image.texels.iter().map(|texel| texel.xyz()).collect() })
         };
         lights.iter().map(of_light).collect()
     }
 
-    /// Share of the background that the drawn cloud hides.
+    /// Fraction of the background that the drawn cloud hides.
     ///
     /// # Errors
     /// As [`PuffCloud::drawn`].
     pub fn drawn_coverage(&self, material: &PuffMaterial) -> Result<Image<f32>, Error> {
         let size = UVec2::splat(self.kind.path_trace.size);
         let [black, white] = [Vec4::ZERO, Vec4::ONE].map(|behind| {
-            let mut picture = Image::new(size, behind);
-            self.prepared(Vec3::Z, material, |frame| frame.render(&mut picture))?;
-            Ok::<_, Error>(picture)
+            let mut image = Image::new(size, behind);
+            self.prepared(Vec3::Z, material, |frame| frame.render(&mut image))?;
+            Ok::<_, Error>(image)
         });
         let black = black?;
         let white = white?;
@@ -281,19 +281,20 @@ impl PuffCloud<'_> {
         Ok(Image { size, texels: texels.collect() })
     }
 
-    /// Shares of a light that fall through the cloud onto places of a scene, by the CPU renderer.
+    /// Fractions of a light that fall through the cloud onto points of a scene, by the CPU renderer.
     ///
     /// # Errors
     /// If a setting of the material is not valid.
     pub fn drawn_transmittance(
         &self,
-        places: &[Vec3],
+        positions: &[Vec3],
         to_light: Vec3,
         material: &PuffMaterial,
     ) -> Result<Vec<Vec3>, Error> {
         self.prepared(to_light, material, |frame| {
-            let through = |place| frame.scene_shadow().map_or(Vec3::ONE, |shadow| shadow.haze_transmittance(place, 0));
-            places.iter().map(|place| through(*place)).collect()
+            let through =
+                |position| frame.scene_shadow().map_or(Vec3::ONE, |shadow| shadow.haze_transmittance(position, 0));
+            positions.iter().map(|position| through(*position)).collect()
         })
     }
 
@@ -329,13 +330,13 @@ impl PuffCloud<'_> {
         let coordinates = Ramp::from_linear(UVec2::new(256, 1), (0..256).map(|x| Vec3::splat(x as f32 / 255.0)));
         let shaded = self.drawn(&lights, &material.with_shadow(&coordinates))?;
         let equations = |(index, to_light): (usize, &Vec3)| {
-            let place = |(plain, shaded): (&Vec3, &Vec3)| {
+            let position = |(plain, shaded): (&Vec3, &Vec3)| {
                 let across = if plain.y > 1.0e-5 { (shaded.y / plain.y).clamp(0.0, 1.0) } else { 0.0 };
                 Vec2::new(across, 0.5 - 0.5 * to_light.z)
             };
             ShadedLight {
                 unshaded: unshaded[index].texels.iter().map(|light| *light * material.exposure).collect(),
-                places: unshaded[index].texels.iter().zip(&shaded[index].texels).map(place).collect(),
+                positions: unshaded[index].texels.iter().zip(&shaded[index].texels).map(position).collect(),
                 truth: truth[index].texels.clone(),
             }
         };

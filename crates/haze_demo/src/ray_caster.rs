@@ -36,12 +36,12 @@ pub(crate) fn render_depth(scene: &Scene, view: &View) -> Image<SampleGroups> {
 pub(crate) struct SceneColor {
     /// Surfaces behind outlines. Alpha is 0: that of smoke is added to it.
     pub behind: Image<Vec4>,
-    /// Objects in front at outlines, with their share of the pixel in alpha.
+    /// Objects in front at outlines, with their fraction of the pixel in alpha.
     pub front: Image<Vec4>,
 }
 
-/// Renders linear color with four samples per pixel. `groups`: those of [`render_depth`]. `through`: share of a light, by its
-/// index, that reaches a point of the world through the smoke.
+/// Renders linear color with four samples per pixel. `groups`: those of [`render_depth`]. `through`: fraction of a light, by
+/// its index, that reaches a point of the world through the smoke.
 pub(crate) fn render_color(
     scene: &Scene,
     view: &View,
@@ -69,9 +69,9 @@ pub(crate) fn render_color(
     let mut front = Image::new(view.size, Vec4::ZERO);
     front.for_each(|at, texel| {
         let groups = groups.load(at.as_ivec2());
-        let share = groups.front_share();
-        if share > 0.0 {
-            *texel = color(at, groups.is_front, groups.front_depth).extend(share);
+        let fraction = groups.front_fraction();
+        if fraction > 0.0 {
+            *texel = color(at, groups.is_front, groups.front_depth).extend(fraction);
         }
     });
     SceneColor { behind, front }

@@ -74,11 +74,11 @@ fn light_visibility(mask: vec4u, origin: vec3f, direction: vec3f, distance: f32,
                 continue;
             }
             // Approximates the closest approach by the two ends of this interval. Ends behind the origin do not count.
-            let places = min(interval, vec2f(distance));
+            let positions = min(interval, vec2f(distance));
             for (var end = 0; end < 2; end++) {
-                let place = places[end];
-                let gap = box_distance(b, o + d * place) / max(place * spread, pixel);
-                visible = select(visible, min(visible, gap), place > 0.0);
+                let position = positions[end];
+                let gap = box_distance(b, o + d * position) / max(position * spread, pixel);
+                visible = select(visible, min(visible, gap), position > 0.0);
             }
         }
     }
@@ -155,8 +155,8 @@ fn box_vertex(@builtin(vertex_index) vertex: u32, @builtin(instance_index) insta
     let index = scene.box_count - 1u - instance;
     let b = boxes[index];
     let face = vertex / 6u;
-    var places = array<u32, 6>(0u, 1u, 2u, 2u, 1u, 3u);
-    let place = places[vertex % 6u];
+    var positions = array<u32, 6>(0u, 1u, 2u, 2u, 1u, 3u);
+    let place = positions[vertex % 6u];
     let u = f32(place & 1u) * 2.0 - 1.0;
     let v = f32((place >> 1u) & 1u) * 2.0 - 1.0;
     let normal = face_normal(face);

@@ -7,8 +7,8 @@
 @group(1) @binding(0) var paint: texture_2d<f32>;
 
 // Returns the direction of the ray through a position in the image, pixels.
-fn ray_direction(place: vec2f) -> vec3f {
-    return normalize(ray_at_unit_depth(place * 2.0 / vec2f(textureDimensions(paint))));
+fn ray_direction(position: vec2f) -> vec3f {
+    return normalize(ray_at_unit_depth(position * 2.0 / vec2f(textureDimensions(paint))));
 }
 
 // Averages samples of a pixel, weighted so that a single bright sample does not dominate an edge (Karis, "Tone mapping",
@@ -37,7 +37,7 @@ fn average(paints: array<vec4f, 4>, lit: array<Lit, 4>, is_in_group: vec4<bool>)
     return sum;
 }
 
-// Light of a group of samples, with their share of the pixel in alpha.
+// Light of a group of samples, with their fraction of the pixel in alpha.
 struct LightParts {
     @location(0) rest: vec4f,
     @location(1) first: vec4f,
@@ -45,9 +45,9 @@ struct LightParts {
     @location(3) third: vec4f,
 }
 
-fn light_parts(lit: Lit, share: f32) -> LightParts {
+fn light_parts(lit: Lit, fraction: f32) -> LightParts {
     return LightParts(
-        vec4f(lit.rest, share),
+        vec4f(lit.rest, fraction),
         vec4f(lit.apart[0], 1.0),
         vec4f(lit.apart[1], 1.0),
         vec4f(lit.apart[2], 1.0),
@@ -66,7 +66,7 @@ fn layer_samples(in: LayerVertex) -> vec4<bool> {
 
 // Alpha of a layer. Behind it is 0: that of the smoke is added to it.
 fn layer_alpha(in: LayerVertex, is_in_layer: vec4<bool>) -> f32 {
-    return select(0.0, group_share(is_in_layer), in.layer == FRONT);
+    return select(0.0, group_fraction(is_in_layer), in.layer == FRONT);
 }
 
 @fragment

@@ -98,15 +98,15 @@ const ROW_BITS: u32 = 11u;
 // Distance beyond everything, metres.
 const MESH_SUN_DISTANCE: f32 = 1.0e6;
 
-fn place_of(index: u32) -> vec2u {
+fn texel_of(index: u32) -> vec2u {
     return vec2u(index & ((1u << ROW_BITS) - 1u), index >> ROW_BITS);
 }
 
 // True if the ray meets the triangle at a distance from 0 to `far`, where it is not cut out. (Möller and Trumbore, 1997)
 fn blocks(index: u32, origin: vec3f, direction: vec3f, far: f32) -> bool {
-    let corner = textureLoad(triangles, place_of(5u * index), 0);
-    let first = textureLoad(triangles, place_of(5u * index + 1u), 0);
-    let second = textureLoad(triangles, place_of(5u * index + 2u), 0);
+    let corner = textureLoad(triangles, texel_of(5u * index), 0);
+    let first = textureLoad(triangles, texel_of(5u * index + 1u), 0);
+    let second = textureLoad(triangles, texel_of(5u * index + 2u), 0);
     let across = cross(direction, second.xyz);
     let determinant = dot(first.xyz, across);
     if abs(determinant) < 1.0e-12 {
@@ -123,12 +123,12 @@ fn blocks(index: u32, origin: vec3f, direction: vec3f, far: f32) -> bool {
     if corner.w < 0.0 {
         return true;
     }
-    let others = textureLoad(triangles, place_of(5u * index + 3u), 0);
+    let others = textureLoad(triangles, texel_of(5u * index + 3u), 0);
     let uv_corner = vec2f(first.w, second.w);
     let uv = uv_corner + (others.xy - uv_corner) * u + (others.zw - uv_corner) * v;
     let side = vec2f(textureDimensions(masks));
     let at = min(vec2u(fract(uv) * side), vec2u(side) - 1u);
-    let alphas = textureLoad(triangles, place_of(5u * index + 4u), 0);
+    let alphas = textureLoad(triangles, texel_of(5u * index + 4u), 0);
     let alpha = alphas.x + (alphas.y - alphas.x) * u + (alphas.z - alphas.x) * v;
     return textureLoad(masks, at, u32(corner.w), 0).r * alpha >= alphas.w;
 }
@@ -139,8 +139,8 @@ fn is_blocked(origin: vec3f, direction: vec3f, far: f32) -> bool {
     let count = u32(textureLoad(nodes, vec2u(0u), 0).w);
     var at = 0u;
     while at < count {
-        let low = textureLoad(nodes, place_of(2u * at), 0);
-        let high = textureLoad(nodes, place_of(2u * at + 1u), 0);
+        let low = textureLoad(nodes, texel_of(2u * at), 0);
+        let high = textureLoad(nodes, texel_of(2u * at + 1u), 0);
         let a = (low.xyz - origin) * inverse;
         let b = (high.xyz - origin) * inverse;
         let near = min(a, b);
@@ -162,7 +162,7 @@ fn is_blocked(origin: vec3f, direction: vec3f, far: f32) -> bool {
     return false;
 }
 
-// Share of a light that reaches a point, 0 or 1.
+// Fraction of a light that reaches a point, 0 or 1.
 fn mesh_visibility(world: vec3f, normal: vec3f, view_depth: f32, light: Light, sample: LightSample) -> f32 {
     if dot(normal, sample.direction) <= 0.0 || sample.attenuation <= 0.0 {
         return 1.0;

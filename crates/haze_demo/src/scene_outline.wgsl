@@ -1,10 +1,10 @@
 // demo scene: outline
 // What    Completes the image: adds objects in front at outlines, each with the smoke in front of it.
 // Reads   the image of the surfaces behind outlines with smoke, whose opacity is in alpha, and without; objects in front, with
-//         their share of the pixel in alpha; depth at 2x2 samples per pixel.
+//         their fraction of the pixel in alpha; depth at 2x2 samples per pixel.
 // Writes  the image (linear HDR).
 // Source  own. Smoke in front of an object is that of the pixels beside it that show the object. Where none does, because the
-//         object is thinner than a pixel, it is a part of the pixel's optical depth, by the object's place between the smoke's
+//         object is thinner than a pixel, it is a part of the pixel's optical depth, by the object's position between the smoke's
 //         nearest and farthest depth.
 
 @group(1) @binding(11) var smoked: texture_2d<f32>;

@@ -65,7 +65,7 @@ pub(crate) struct SceneRenderer {
 pub(crate) struct SceneTargets {
     /// Surfaces behind outlines. Alpha is 0: that of smoke is added to it.
     pub color: wgpu::Texture,
-    /// Objects in front at outlines, with their share of the pixel in alpha.
+    /// Objects in front at outlines, with their fraction of the pixel in alpha.
     pub front: wgpu::TextureView,
     pub depth: wgpu::TextureView,
     /// Linear view depth, if the adapter can render to `R32Float`.

@@ -56,8 +56,8 @@ fn sample_groups(pixel: vec2i) -> SampleGroups {
     );
 }
 
-// Number of samples in a group, as a share of the four.
-fn group_share(is_in_group: vec4<bool>) -> f32 {
+// Number of samples in a group, as a fraction of the four.
+fn group_fraction(is_in_group: vec4<bool>) -> f32 {
     return dot(select(vec4f(0.0), vec4f(0.25), is_in_group), vec4f(1.0));
 }
 

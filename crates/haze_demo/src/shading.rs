@@ -42,8 +42,8 @@ fn stains(p: Vec3) -> f32 {
 
 /// Returns 0 on a joint between tiles of `size`, 1 on a tile.
 fn joints(uv: Vec2, size: Vec2, width: f32) -> f32 {
-    let place = uv / size;
-    let from_edge = (0.5 - (place - place.floor() - 0.5).abs()) * size;
+    let position = uv / size;
+    let from_edge = (0.5 - (position - position.floor() - 0.5).abs()) * size;
     smoothstep(0.0, width, from_edge.min_element())
 }
 
@@ -138,8 +138,8 @@ impl Scene {
                 continue;
             }
             // Approximates the closest approach by the two ends of this interval. Ends behind the origin do not count.
-            for place in [enter.min(distance), leave.min(distance)].into_iter().filter(|&place| place > 0.0) {
-                visible = visible.min(box_distance(b, o + d * place) / (place * spread).max(pixel));
+            for position in [enter.min(distance), leave.min(distance)].into_iter().filter(|&position| position > 0.0) {
+                visible = visible.min(box_distance(b, o + d * position) / (position * spread).max(pixel));
             }
         }
         smoothstep(0.0, 1.0, visible)
@@ -158,7 +158,7 @@ impl Scene {
         mix(0.25, 1.0, saturate(open_near / 0.15)) * mix(0.35, 1.0, saturate(open_far / AMBIENT_REACH))
     }
 
-    /// Returns the light at a point of a box. `pixel` is the width of a pixel there, metres. `through`: share of each light
+    /// Returns the light at a point of a box. `pixel` is the width of a pixel there, metres. `through`: fraction of each light
     /// that comes through the smoke.
     pub fn irradiance(&self, world: Vec3, normal: Vec3, pixel: f32, through: &impl Fn(u32) -> Vec3) -> Lit {
         let unshaded = Lit::even(self.ambient_light(normal) * self.ambient_visibility(world, normal));

@@ -10,7 +10,7 @@ use haze_core::settings::BackdropKind;
 use haze_demo::shot::Shot;
 use haze_preset::{Preset, backdrop_endings, backdrop_kind};
 
-/// Scene and sky from files, in place of those of the preset.
+/// Scene and sky from files, instead of those of the preset.
 #[derive(Args, Clone, Debug, Default)]
 pub struct BackdropArguments {
     /// Scene around the smoke: a glTF file, in any folder.
@@ -23,10 +23,10 @@ pub struct BackdropArguments {
     /// alone does so too.
     #[arg(long, requires = "sky")]
     sky_from_blender: bool,
-    /// Use a camera of the scene file in place of the preset's: that of this name, or the first.
+    /// Use a camera of the scene file instead of the preset's: that of this name, or the first.
     #[arg(long, value_name = "NAME", num_args = 0..=1, default_missing_value = "")]
     scene_camera: Option<String>,
-    /// Use the lights of the scene file in place of the preset's.
+    /// Use the lights of the scene file instead of the preset's.
     #[arg(long)]
     scene_lights: bool,
 }
@@ -52,7 +52,7 @@ impl BackdropArguments {
         self.scene_camera.is_some() || self.scene_lights
     }
 
-    /// Builds a shot by `load`, with these files in place of those that the preset names, and takes camera and lights of the
+    /// Builds a shot by `load`, with these files instead of those that the preset names, and takes camera and lights of the
     /// scene if they are asked for.
     ///
     /// # Errors

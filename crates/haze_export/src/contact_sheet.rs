@@ -20,7 +20,7 @@ pub const BACKGROUND: Rgb<u8> = Rgb([24, 25, 28]);
 /// Grid of cells of one size, row by row.
 pub struct ContactSheet {
     /// The sheet.
-    pub picture: RgbImage,
+    pub image: RgbImage,
     columns: u32,
     cell: UVec2,
 }
@@ -30,34 +30,34 @@ impl ContactSheet {
     pub fn new(size: UVec2, columns: u32, count: u32) -> Self {
         let cell = size + UVec2::new(MARGIN, MARGIN + LABEL_HEIGHT);
         let rows = count.div_ceil(columns);
-        let picture = RgbImage::from_pixel(cell.x * columns + MARGIN, cell.y * rows + MARGIN, BACKGROUND);
-        Self { picture, columns, cell }
+        let image = RgbImage::from_pixel(cell.x * columns + MARGIN, cell.y * rows + MARGIN, BACKGROUND);
+        Self { image, columns, cell }
     }
 
     /// Puts an image and its label into a cell.
-    pub fn place(&mut self, index: u32, label: &str, picture: &RgbImage) {
+    pub fn place(&mut self, index: u32, label: &str, image: &RgbImage) {
         let corner = UVec2::new(index % self.columns, index / self.columns) * self.cell + MARGIN;
-        draw_text(&mut self.picture, corner.x as f32 + 2.0, corner.y as f32, TEXT_HEIGHT, TEXT_COLOR, label);
-        imageops::replace(&mut self.picture, picture, i64::from(corner.x), i64::from(corner.y + LABEL_HEIGHT));
+        draw_text(&mut self.image, corner.x as f32 + 2.0, corner.y as f32, TEXT_HEIGHT, TEXT_COLOR, label);
+        imageops::replace(&mut self.image, image, i64::from(corner.x), i64::from(corner.y + LABEL_HEIGHT));
     }
 
     /// Draws an inset over the lower left corner of a cell's image.
     pub fn inset(&mut self, index: u32, inset: &RgbImage) {
         let end = UVec2::new(index % self.columns, index / self.columns + 1) * self.cell;
         let corner = end + UVec2::new(MARGIN, 0) - UVec2::new(0, inset.height());
-        imageops::replace(&mut self.picture, inset, i64::from(corner.x), i64::from(corner.y));
+        imageops::replace(&mut self.image, inset, i64::from(corner.x), i64::from(corner.y));
     }
 
     /// Adds text below the cells, wrapped to the width of the sheet.
     pub fn add_footer(&mut self, text: &str) {
-        let (width, height) = self.picture.dimensions();
+        let (width, height) = self.image.dimensions();
         let left = MARGIN as f32 + 2.0;
         let lines = wrap_text(TEXT_HEIGHT, width as f32 - 2.0 * left, text);
-        let mut picture = RgbImage::from_pixel(width, height + FOOTER_LINE_HEIGHT * lines.len() as u32, BACKGROUND);
-        imageops::replace(&mut picture, &self.picture, 0, 0);
+        let mut image = RgbImage::from_pixel(width, height + FOOTER_LINE_HEIGHT * lines.len() as u32, BACKGROUND);
+        imageops::replace(&mut image, &self.image, 0, 0);
         for (line, text) in (0..).zip(&lines) {
             draw_text(
-                &mut picture,
+                &mut image,
                 left,
                 (height + FOOTER_LINE_HEIGHT * line) as f32 - 4.0,
                 TEXT_HEIGHT,
@@ -65,7 +65,7 @@ impl ContactSheet {
                 text,
             );
         }
-        self.picture = picture;
+        self.image = image;
     }
 }
 
@@ -80,16 +80,12 @@ mod tests {
         // Returns the number of text pixels, whether any is beyond the right margin, and the number of lines.
         let ink = |side: u32| {
             let mut sheet = ContactSheet::new(UVec2::new(side, 10), 2, 2);
-            let above = sheet.picture.height();
+            let above = sheet.image.height();
             sheet.add_footer(text);
-            let margin = sheet.picture.width() - MARGIN;
+            let margin = sheet.image.width() - MARGIN;
             let inked: Vec<_> =
-                sheet.picture.enumerate_pixels().filter(|(_, y, p)| *y >= above && **p != BACKGROUND).collect();
-            (
-                inked.len(),
-                inked.iter().any(|(x, ..)| *x >= margin),
-                (sheet.picture.height() - above) / FOOTER_LINE_HEIGHT,
-            )
+                sheet.image.enumerate_pixels().filter(|(_, y, p)| *y >= above && **p != BACKGROUND).collect();
+            (inked.len(), inked.iter().any(|(x, ..)| *x >= margin), (sheet.image.height() - above) / FOOTER_LINE_HEIGHT)
         };
         let (whole, _, lines) = ink(900);
         assert_eq!(lines, 1);

@@ -143,9 +143,9 @@ impl Frames {
         let format = self.format.resolved(shot);
         for (done, frame) in (0..).zip(self.range.clone()) {
             let shot = self.shot(shot, frame);
-            let picture = progress.render(done, self.count(), backend, &shot, format).await?;
-            let picture = picture.ok_or_else(|| stopped(done))?;
-            take(frame, picture)?;
+            let image = progress.render(done, self.count(), backend, &shot, format).await?;
+            let image = image.ok_or_else(|| stopped(done))?;
+            take(frame, image)?;
         }
         Ok(())
     }
@@ -183,7 +183,7 @@ pub async fn write_sequence(
     effort: CompressionEffort,
     progress: &ExportProgress<'_>,
 ) -> Result<(), Error> {
-    let write = |frame, picture: DynamicImage| Ok(write_png(&names.of(frame), &picture, effort)?);
+    let write = |frame, image: DynamicImage| Ok(write_png(&names.of(frame), &image, effort)?);
     frames.render(backend, shot, progress, write, |done| frames.stopped_sequence(names, done)).await
 }
 
@@ -227,9 +227,9 @@ pub async fn render_flipbook(
     let size = shot.size * UVec2::new(columns, cells.x);
     let mut sheet = frames.format.blank(shot, size);
     let mut index = 0;
-    let place = |_, picture: DynamicImage| {
+    let place = |_, image: DynamicImage| {
         let corner = UVec2::new(index % columns, index / columns) * shot.size;
-        image_format::place(&mut sheet, &picture, corner);
+        image_format::place(&mut sheet, &image, corner);
         index += 1;
         Ok(())
     };
@@ -260,10 +260,10 @@ pub async fn write_gif(
     let mut index = 0;
     // Delays are differences of rounded end times, so that rounding does not change the total duration.
     let end = |index: u32| (index as f32 * 100.0 / frames.rate).round() as u32;
-    let encode = |_, picture: DynamicImage| {
+    let encode = |_, image: DynamicImage| {
         let delay = Delay::from_numer_denom_ms(10 * (end(index + 1) - end(index)), 1);
         index += 1;
-        encoder.encode_frame(Frame::from_parts(picture.into_rgba8(), 0, 0, delay)).map_err(failed)
+        encoder.encode_frame(Frame::from_parts(image.into_rgba8(), 0, 0, delay)).map_err(failed)
     };
     let stopped = |done| stopped_before_writing(path, done, frames.count());
     frames.render(backend, shot, progress, encode, stopped).await?;
@@ -290,9 +290,9 @@ pub async fn render_sheet(
     let size = cells.first().map_or(UVec2::ONE, |(_, shot)| shot.size);
     let mut sheet = ContactSheet::new(size, columns, count);
     for (index, (label, shot)) in (0..).zip(cells) {
-        let picture = progress.render(index, count, backend, shot, SCENE).await?;
-        let picture = picture.ok_or_else(|| stopped_before_writing(path, index, count))?;
-        sheet.place(index, label, &picture.into_rgb8());
+        let image = progress.render(index, count, backend, shot, SCENE).await?;
+        let image = image.ok_or_else(|| stopped_before_writing(path, index, count))?;
+        sheet.place(index, label, &image.into_rgb8());
     }
     Ok(sheet)
 }

@@ -163,16 +163,16 @@ fn rgba16(encoded: &Image<Vec4>) -> ImageBuffer<image::Rgba<u16>, Vec<u16>> {
 }
 
 /// Copies an image onto a sheet of the same pixels. `imageops` would convert those of a [`DynamicImage`] to 8 bits.
-pub fn place(sheet: &mut DynamicImage, picture: &DynamicImage, at: UVec2) {
+pub fn place(sheet: &mut DynamicImage, image: &DynamicImage, at: UVec2) {
     use DynamicImage::{ImageRgb8, ImageRgb16, ImageRgba8, ImageRgba16};
     let x = i64::from(at.x);
     let y = i64::from(at.y);
-    match (sheet, picture) {
-        (ImageRgb8(sheet), ImageRgb8(picture)) => imageops::replace(sheet, picture, x, y),
-        (ImageRgba8(sheet), ImageRgba8(picture)) => imageops::replace(sheet, picture, x, y),
-        (ImageRgb16(sheet), ImageRgb16(picture)) => imageops::replace(sheet, picture, x, y),
-        (ImageRgba16(sheet), ImageRgba16(picture)) => imageops::replace(sheet, picture, x, y),
-        (sheet, picture) => imageops::replace(sheet, picture, x, y),
+    match (sheet, image) {
+        (ImageRgb8(sheet), ImageRgb8(image)) => imageops::replace(sheet, image, x, y),
+        (ImageRgba8(sheet), ImageRgba8(image)) => imageops::replace(sheet, image, x, y),
+        (ImageRgb16(sheet), ImageRgb16(image)) => imageops::replace(sheet, image, x, y),
+        (ImageRgba16(sheet), ImageRgba16(image)) => imageops::replace(sheet, image, x, y),
+        (sheet, image) => imageops::replace(sheet, image, x, y),
     }
 }
 
@@ -266,10 +266,10 @@ mod tests {
         let shot = small("column");
         let format =
             ImageFormat { background: Background::Transparent, bits: BitDepth::Sixteen, ..ImageFormat::default() };
-        let picture = rendered(&shot, format);
+        let image = rendered(&shot, format);
         let mut sheet = format.blank(&shot, UVec2::new(96, 48));
-        place(&mut sheet, &picture, UVec2::new(48, 0));
-        assert_eq!(sheet.crop_imm(48, 0, 48, 48), picture);
+        place(&mut sheet, &image, UVec2::new(48, 0));
+        assert_eq!(sheet.crop_imm(48, 0, 48, 48), image);
         assert_eq!(sheet.crop_imm(0, 0, 48, 48).into_rgba16().as_raw().iter().max(), Some(&0));
     }
 }

@@ -30,7 +30,7 @@ pub fn backdrop_file_paths(folders: &AssetFolders, preset: &Preset) -> Vec<PathB
 /// Returns every particle file that a preset names, and the next file of each sequence, which may be written later.
 pub fn particle_file_paths(folders: &AssetFolders, preset: &Preset) -> Vec<PathBuf> {
     let files = preset.systems.iter().filter_map(|system| particle_file_path(&system.particle_files.path));
-    files.flat_map(|file| folders.candidate_paths(file)).flat_map(|place| haze_preset::watched_paths(&place)).collect()
+    files.flat_map(|file| folders.candidate_paths(file)).flat_map(|path| haze_preset::watched_paths(&path)).collect()
 }
 
 struct ImageNames(Vec<String>);

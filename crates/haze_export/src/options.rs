@@ -132,7 +132,7 @@ impl ShotArguments {
         self.load_for(&[&[output], others].concat(), "png")
     }
 
-    /// Like [`Self::load`], with `outputs` in place of `--output`; their names end in `kind`.
+    /// Like [`Self::load`], with `outputs` instead of `--output`; their names end in `kind`.
     pub fn load_for(&self, outputs: &[(&str, PathBuf)], kind: &str) -> Result<Shot, Error> {
         let outputs: Vec<_> = outputs.iter().map(|(option, path)| (*option, path.clone(), kind)).collect();
         self.load_outputs(&outputs)
@@ -170,8 +170,8 @@ impl ShotArguments {
 
     /// Refuses outputs that cannot be written, or that the shot was read from.
     pub fn check_outputs(&self, shot: &Shot, outputs: &[(&str, PathBuf, &str)]) -> Result<(), Error> {
-        let pictures = image_paths(&self.assets.folders(&self.preset)?, &shot.preset);
-        let inputs = pictures.iter().map(PathBuf::as_path).chain(shot.backdrop.files()).chain([self.preset.as_path()]);
+        let images = image_paths(&self.assets.folders(&self.preset)?, &shot.preset);
+        let inputs = images.iter().map(PathBuf::as_path).chain(shot.backdrop.files()).chain([self.preset.as_path()]);
         let mut files = FileChecks::for_inputs(inputs);
         outputs.iter().try_for_each(|(option, path, kind)| files.check_output(option, path, kind))
     }
@@ -231,8 +231,8 @@ impl ShotArguments {
     }
 
     /// Writes the image, and prints a line that says so.
-    pub fn write(&self, picture: impl Into<DynamicImage>, shot: &Shot, backend: &Backend) -> Result<(), Error> {
-        write_png(&self.output, &picture.into(), self.effort())?;
+    pub fn write(&self, image: impl Into<DynamicImage>, shot: &Shot, backend: &Backend) -> Result<(), Error> {
+        write_png(&self.output, &image.into(), self.effort())?;
         print_line!("{}: {} on {}", self.output.display(), shot.preset.name, backend.description())
     }
 }

@@ -65,7 +65,7 @@ impl PageRenderer {
             next_task().await;
             let _ = device.poll(wgpu::PollType::Poll);
         }
-        image.take().ok_or_else(|| failed("the picture was not read back"))
+        image.take().ok_or_else(|| failed("the image was not read back"))
     }
 }
 

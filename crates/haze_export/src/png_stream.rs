@@ -133,21 +133,21 @@ mod tests {
         let code = |index: usize| (index / 29 % 251) as u8;
         let codes: Vec<_> = (0..37 * 24 * 4).map(code).collect();
         let rgb = codes[..37 * 24 * 3].to_vec();
-        let pictures: [DynamicImage; 2] =
+        let images: [DynamicImage; 2] =
             [RgbImage::from_raw(37, 24, rgb).unwrap().into(), RgbaImage::from_raw(37, 24, codes).unwrap().into()];
-        for picture in &pictures {
+        for image in &images {
             for effort in [CompressionEffort::Quick, CompressionEffort::Small] {
                 let [path, whole] = ["rows.png", "whole.png"].map(|name| folder.path().join(name));
-                let has_alpha = picture.color().has_alpha();
+                let has_alpha = image.color().has_alpha();
                 let shape = PngShape { width: 37, height: 24, has_alpha, path: path.clone(), scratch: folder.path() };
                 let mut rows = PngStream::new(shape, effort).unwrap();
                 // Three times eight rows.
-                picture.as_bytes().chunks(picture.as_bytes().len() / 3).for_each(|part| rows.write_rows(part).unwrap());
+                image.as_bytes().chunks(image.as_bytes().len() / 3).for_each(|part| rows.write_rows(part).unwrap());
                 let encoded = rows.finish().unwrap();
                 assert!(!path.exists());
                 encoded.write().unwrap();
-                write_png(&whole, picture, effort).unwrap();
-                assert_eq!(image::open(&path).unwrap(), *picture);
+                write_png(&whole, image, effort).unwrap();
+                assert_eq!(image::open(&path).unwrap(), *image);
                 let bytes = |path| std::fs::metadata(path).unwrap().len();
                 // The stream has more chunks.
                 assert!(bytes(&path) < bytes(&whole) + 200, "{} {}", bytes(&path), bytes(&whole));

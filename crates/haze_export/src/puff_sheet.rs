@@ -31,7 +31,7 @@ fn over_background(light: &Image<Vec3>, coverage: &Image<f32>, white: f32) -> Rg
 fn white_level(puff: &Puff) -> f32 {
     let mut brightest: Vec<f32> = puff.traced().light[..SHOWN_LIGHTS - 2]
         .iter()
-        .flat_map(|picture| picture.texels.iter().map(|light| light.max_element()))
+        .flat_map(|image| image.texels.iter().map(|light| light.max_element()))
         .collect();
     brightest.sort_by(f32::total_cmp);
     brightest.get(brightest.len() * 995 / 1000).copied().unwrap_or(1.0).max(1.0e-6)
@@ -46,14 +46,14 @@ pub fn traced_sheet(puff: &Puff) -> RgbImage {
     let mut sheet = ContactSheet::new(UVec2::splat(SIDE), SHOWN_LIGHTS as u32, SHOWN_LIGHTS as u32);
     let white = white_level(puff);
     for light in 0..SHOWN_LIGHTS {
-        let picture = over_background(&puff.traced().light[light], &puff.traced().coverage, white);
-        sheet.place(light as u32, &degrees(light), &enlarged(&picture));
+        let image = over_background(&puff.traced().light[light], &puff.traced().coverage, white);
+        sheet.place(light as u32, &degrees(light), &enlarged(&image));
     }
-    sheet.picture
+    sheet.image
 }
 
-fn enlarged(picture: &RgbImage) -> RgbImage {
-    resize(picture, SIDE, SIDE, FilterType::CatmullRom)
+fn enlarged(image: &RgbImage) -> RgbImage {
+    resize(image, SIDE, SIDE, FilterType::CatmullRom)
 }
 
 /// Images that are compared with the path-traced puff: one for each light, and the factor they are multiplied by.
@@ -74,12 +74,12 @@ pub fn comparison_sheet(puff: &Puff, name: &str, shown: &ComparedImages<'_>) -> 
             let [a, b] = [truth.get_pixel(x, y).0, ours.get_pixel(x, y).0];
             Rgb(std::array::from_fn(|channel| a[channel].abs_diff(b[channel])))
         });
-        for (row, (what, picture)) in [("traced", truth), (name, ours), ("error", difference)].iter().enumerate() {
+        for (row, (what, image)) in [("traced", truth), (name, ours), ("error", difference)].iter().enumerate() {
             let label = format!("{what}, {}", degrees(light));
-            sheet.place((row * SHOWN_LIGHTS + light) as u32, &label, &enlarged(picture));
+            sheet.place((row * SHOWN_LIGHTS + light) as u32, &label, &enlarged(image));
         }
     }
-    sheet.picture
+    sheet.image
 }
 
 /// The path-traced image and the compared image under one light, at the same exposure.

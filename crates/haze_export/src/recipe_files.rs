@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use super::file_kind::recipe_kinds;
 
 /// Returns the possible recipes of an image: `fire.ramp.json`, and so on, for `fire.png`.
-pub fn recipe_paths(picture: &Path) -> impl Iterator<Item = PathBuf> {
-    recipe_kinds().map(|kind| picture.with_extension(format!("{kind}.json")))
+pub fn recipe_paths(image: &Path) -> impl Iterator<Item = PathBuf> {
+    recipe_kinds().map(|kind| image.with_extension(format!("{kind}.json")))
 }
 
 /// Name without `.json`: `fire.ramp` for `fire.ramp.json`.
@@ -20,8 +20,8 @@ pub fn image_path(path: &Path) -> PathBuf {
 }
 
 /// Returns the path of a sprite's six-way maps: `smoke.six_way.png` for `smoke.png`.
-pub fn six_way_path(picture: &Path) -> PathBuf {
-    picture.with_extension("six_way.png")
+pub fn six_way_path(image: &Path) -> PathBuf {
+    image.with_extension("six_way.png")
 }
 
 /// True if the path has this extension, in any case.

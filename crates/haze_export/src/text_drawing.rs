@@ -4,7 +4,7 @@ use ab_glyph::{Font, FontRef, GlyphId, InvalidFont, PxScale, ScaleFont, point};
 use image::{Rgb, RgbImage};
 
 /// Draws `text`, `height` pixels high, with its upper left corner at (`x`, `y`); text beyond the image is cut off.
-pub fn draw_text(picture: &mut RgbImage, x: f32, y: f32, height: f32, color: Rgb<u8>, text: &str) {
+pub fn draw_text(image: &mut RgbImage, x: f32, y: f32, height: f32, color: Rgb<u8>, text: &str) {
     let Ok(font) = font() else { return };
     let baseline = y + font.as_scaled(PxScale::from(height)).ascent();
     for (id, left) in lay_out_glyphs(&font, height, text).0 {
@@ -14,9 +14,9 @@ pub fn draw_text(picture: &mut RgbImage, x: f32, y: f32, height: f32, color: Rgb
                 let px = bounds.min.x as i64 + i64::from(dx);
                 let py = bounds.min.y as i64 + i64::from(dy);
                 let inside =
-                    (0..i64::from(picture.width())).contains(&px) && (0..i64::from(picture.height())).contains(&py);
+                    (0..i64::from(image.width())).contains(&px) && (0..i64::from(image.height())).contains(&py);
                 if inside {
-                    let pixel = picture.get_pixel_mut(px as u32, py as u32);
+                    let pixel = image.get_pixel_mut(px as u32, py as u32);
                     for (channel, ink) in pixel.0.iter_mut().zip(color.0) {
                         let mixed = f32::from(*channel) + (f32::from(ink) - f32::from(*channel)) * coverage.min(1.0);
                         *channel = mixed.round() as u8;

@@ -135,9 +135,9 @@ mod tests {
         assert!(early.lights[1].color.distance(Vec3::new(1.0, 0.75, 0.5)) < 1e-6, "linear light");
         assert!(early.lights[1].direction.distance(Vec3::new(-1.0, -1.0, 0.0).normalize()) < 1e-5);
         assert_eq!(early.systems[0].settings.accumulate.downscale, 3, "2.5 is rounded");
-        let share = |time: f64| preset.evaluate(time).lights[2].intensity / preset.lights[2].intensity;
-        assert!((0..50).any(|step| (share(f64::from(step) * 0.1) - 1.0).abs() > 0.2));
-        assert!((0..50).all(|step| (share(f64::from(step) * 0.1) - 1.0).abs() <= 0.5 + 1e-6));
+        let fraction = |time: f64| preset.evaluate(time).lights[2].intensity / preset.lights[2].intensity;
+        assert!((0..50).any(|step| (fraction(f64::from(step) * 0.1) - 1.0).abs() > 0.2));
+        assert!((0..50).all(|step| (fraction(f64::from(step) * 0.1) - 1.0).abs() <= 0.5 + 1e-6));
         // An editor sees the steady value.
         let edited = preset.with_keyframes_at(2.0);
         assert_eq!((edited.lights[2].intensity, edited.camera), (preset.lights[2].intensity, middle.camera));

@@ -66,7 +66,7 @@ impl AssetFolders {
     /// # Errors
     /// [`AssetError::Image`] if no folder has it, with the folders and the most similar name.
     pub fn find(&self, file: &Path) -> Result<PathBuf, AssetError> {
-        self.candidate_paths(file).find(|place| exists(place)).ok_or_else(|| self.missing(file))
+        self.candidate_paths(file).find(|path| exists(path)).ok_or_else(|| self.missing(file))
     }
 
     fn all(&self) -> impl Iterator<Item = &Path> {

@@ -22,16 +22,16 @@ const MARK_BYTES: usize = 12 + KEYWORD.len() + 16;
 ///
 /// # Errors
 /// [`AssetError::Io`] if the file cannot be written.
-pub fn write_baked_png(path: &Path, picture: &DynamicImage) -> Result<(), AssetError> {
-    write_file(path, &encode_baked_png(path, picture)?)
+pub fn write_baked_png(path: &Path, image: &DynamicImage) -> Result<(), AssetError> {
+    write_file(path, &encode_baked_png(path, image)?)
 }
 
 /// Encodes the image of a recipe as [`write_baked_png`] writes it. `path` is used only in errors.
 ///
 /// # Errors
 /// [`AssetError::Io`] if the encoder fails.
-pub fn encode_baked_png(path: &Path, picture: &DynamicImage) -> Result<Vec<u8>, AssetError> {
-    Ok(marked(encode_png(path, picture, CompressionEffort::Small)?))
+pub fn encode_baked_png(path: &Path, image: &DynamicImage) -> Result<Vec<u8>, AssetError> {
+    Ok(marked(encode_png(path, image, CompressionEffort::Small)?))
 }
 
 /// Returns true if [`write_baked_png`] wrote the file and its bytes have not changed since.
@@ -76,17 +76,17 @@ mod tests {
         let path = folder.path().join("a.png");
         assert!(!is_baked_png(&path));
         let pixels = image::ImageBuffer::from_fn(9, 3, |x, y| image::Rgb([x as u16, y as u16, 65535]));
-        let picture = DynamicImage::from(pixels);
-        write_baked_png(&path, &picture).unwrap();
-        assert!(is_baked_png(&path) && read_png(&path).unwrap() == picture);
-        write_png(&path, &picture, CompressionEffort::Small).unwrap();
+        let image = DynamicImage::from(pixels);
+        write_baked_png(&path, &image).unwrap();
+        assert!(is_baked_png(&path) && read_png(&path).unwrap() == image);
+        write_png(&path, &image, CompressionEffort::Small).unwrap();
         assert!(!is_baked_png(&path));
     }
 
     #[test]
     fn a_change_of_any_byte_invalidates_the_mark() {
-        let picture = DynamicImage::new_rgb8(3, 2);
-        let good = marked(encode_png(Path::new("a.png"), &picture, CompressionEffort::Small).unwrap());
+        let image = DynamicImage::new_rgb8(3, 2);
+        let good = marked(encode_png(Path::new("a.png"), &image, CompressionEffort::Small).unwrap());
         assert!(is_marked(&good));
         for at in 0..good.len() {
             let mut bytes = good.clone();

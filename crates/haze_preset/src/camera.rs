@@ -13,7 +13,7 @@ settings! {
         /// Position in world space, metres. Inside the smoke, sprites fade before they reach the camera.
         #[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))]
         position: Vec3 = Vec3::new(0.0, 2.0, 8.0), vector(-1.0e5..=1.0e5, "m");
-        /// Point in the middle of the picture, metres.
+        /// Point in the middle of the image, metres.
         #[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))]
         target: Vec3 = Vec3::new(0.0, 1.5, 0.0), vector(-1.0e5..=1.0e5, "m");
         /// Vertical field of view, degrees. Lower: brings the smoke near and flattens it. Higher: shows more of the
@@ -23,19 +23,19 @@ settings! {
         near: f32 = 0.1, number(0.001..=100.0, "m");
         /// Far plane, metres. Anything beyond is cut off.
         far: f32 = 200.0, number(|this| this.near * 1.01..=1.0e5, "m");
-        /// Multiplies the linear picture by 2^exposure before it is tonemapped. Each step up doubles the light; glow
+        /// Multiplies the linear image by 2^exposure before it is tonemapped. Each step up doubles the light; glow
         /// turns white.
         exposure: f32 = 0.0, number(-16.0..=16.0, "EV");
-        /// Tonemap of the program's pictures. An engine has its own: choose the one that is most like it.
+        /// Tonemap of the program's images. An engine has its own: choose the one that is most like it.
         tonemap: Tonemap = Tonemap::default(), choice;
-        /// Fraction of the light that the lens spreads around bright places: fire and sparks glow into the air. 0.05 is a clean
-        /// lens, 0.3 a dreamy one. Pictures of smoke alone have none: it belongs to the engine that shows them.
+        /// Fraction of the light that the lens spreads around bright areas: fire and sparks glow into the air. 0.05 is a clean
+        /// lens, 0.3 a dreamy one. Images of smoke alone have none: it belongs to the engine that shows them.
         bloom: f32 = 0.0, number(0.0..=1.0, "");
     }
 }
 
 impl Camera {
-    /// View of a picture of this size.
+    /// View of an image of this size.
     pub fn view(&self, size: UVec2) -> View {
         let aspect = size.x.max(1) as f32 / size.y.max(1) as f32;
         // When looking straight up or down, x stays to the right.

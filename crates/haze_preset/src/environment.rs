@@ -13,7 +13,7 @@ settings! {
     pub struct Environment {
         /// Scene around the smoke, which hides the smoke and is hidden by it.
         scene: SceneName = SceneName::Yard, choice;
-        /// glTF file, in place of the demo scene; empty for none. Its y axis points up.
+        /// glTF file, instead of the demo scene; empty for none. Its y axis points up.
         scene_file: String = String::new(), backdrop(BackdropKind::Scene);
         /// Metres per unit of the scene file. glTF's unit is the metre. Higher: a larger scene around the same smoke.
         scene_scale: f32 = 1.0, number(1.0e-4..=1.0e4, "m");
@@ -32,7 +32,7 @@ settings! {
         /// Linear RGB of the light that the ground reflects to the undersides of the scene.
         #[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))]
         ground: Vec3 = Vec3::new(0.03, 0.028, 0.026), color(0.0..=100.0);
-        /// Panorama of all directions, twice as wide as high, in place of the sky's colors behind the smoke; empty for none.
+        /// Panorama of all directions, twice as wide as high, instead of the sky's colors behind the smoke; empty for none.
         sky_file: String = String::new(), backdrop(BackdropKind::Sky);
         /// Turns the panorama about the vertical axis, and its light with it.
         sky_rotation: f32 = 0.0, number(-360.0..=360.0, "degrees");

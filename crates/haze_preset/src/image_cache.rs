@@ -89,8 +89,8 @@ impl<'a> ImageCache<'a> {
             return Ok(());
         }
         let [found, most] = [self.bytes, MAX_IMAGE_BYTES].map(|bytes| bytes >> 20);
-        let problem = format!("up to this one, the pictures of the preset take {found} MiB");
-        let expected = format!("at most {most} MiB, each picture counted as often as it is named");
+        let problem = format!("up to this one, the images of the preset take {found} MiB");
+        let expected = format!("at most {most} MiB, each image counted as often as it is named");
         Err(FieldError::from_problem(format!("material.{field}"), problem, expected))
     }
 }
@@ -100,12 +100,12 @@ fn get_or_load<K: Hash + Eq, T: Clone>(
     key: K,
     load: impl FnOnce(&K) -> Result<T, AssetError>,
 ) -> Result<T, AssetError> {
-    if let Some(picture) = loaded.get(&key) {
-        return Ok(picture.clone());
+    if let Some(image) = loaded.get(&key) {
+        return Ok(image.clone());
     }
-    let picture = load(&key)?;
-    loaded.insert(key, picture.clone());
-    Ok(picture)
+    let image = load(&key)?;
+    loaded.insert(key, image.clone());
+    Ok(image)
 }
 
 /// Adds the field of the preset that names it to the error of an image.
@@ -126,29 +126,29 @@ mod tests {
         let path = folder.path().join(file);
         let layout = SpriteLayout::default();
         image::RgbaImage::new(1, 1).save(&path).unwrap();
-        let mut pictures = ImageCache::new(ImageSource::Folders(AssetFolders::new(folder.path())));
-        let ramp = pictures.ramp("motif", file).unwrap();
-        let noise = pictures.noise("noise", file).unwrap();
-        let sprite = pictures.sprite("sprite", file, layout).unwrap();
+        let mut images = ImageCache::new(ImageSource::Folders(AssetFolders::new(folder.path())));
+        let ramp = images.ramp("motif", file).unwrap();
+        let noise = images.noise("noise", file).unwrap();
+        let sprite = images.sprite("sprite", file, layout).unwrap();
         std::fs::remove_file(&path).unwrap();
-        assert_eq!(pictures.ramp("age_ramp", file).unwrap(), ramp);
-        assert_eq!(pictures.noise("noise", file).unwrap(), noise);
-        assert_eq!(pictures.sprite("detail", file, layout).unwrap(), sprite);
+        assert_eq!(images.ramp("age_ramp", file).unwrap(), ramp);
+        assert_eq!(images.noise("noise", file).unwrap(), noise);
+        assert_eq!(images.sprite("detail", file, layout).unwrap(), sprite);
         // The ramp has four half floats a texel, the noise and the sprite four bytes.
-        assert_eq!(pictures.bytes, 2 * (8 + 4 + 4));
+        assert_eq!(images.bytes, 2 * (8 + 4 + 4));
         let other = SpriteLayout { y_down: true, ..layout };
-        let error = pictures.sprite("sprite", file, other).unwrap_err().to_string();
+        let error = images.sprite("sprite", file, other).unwrap_err().to_string();
         assert!(error.starts_with("material.sprite: ") && error.contains("own.png: No such file"), "{error}");
     }
 
     #[test]
     fn built_in_images_are_decoded_once() {
-        let mut pictures = ImageCache::new(ImageSource::Folders(AssetFolders::new(Path::new(""))));
+        let mut images = ImageCache::new(ImageSource::Folders(AssetFolders::new(Path::new(""))));
         let puff = builtin::find(builtin::SPRITES, "puff").unwrap();
-        let [(first, _), (again, _)] = [(); 2].map(|()| pictures.builtin_sprite(puff).unwrap());
+        let [(first, _), (again, _)] = [(); 2].map(|()| images.builtin_sprite(puff).unwrap());
         assert!(first.shares_memory(&again));
         let noise = &builtin::NOISES[0];
-        let [first, again] = [(); 2].map(|()| pictures.builtin_noise(noise).unwrap());
+        let [first, again] = [(); 2].map(|()| images.builtin_noise(noise).unwrap());
         assert!(first.shares_memory(&again));
     }
 }

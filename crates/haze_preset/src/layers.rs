@@ -24,15 +24,15 @@ pub struct Layer {
 }
 
 impl Layer {
-    /// The system with the origin moved to a place, metres.
+    /// The system with the origin moved to a position, metres.
     #[must_use]
-    pub fn at(&self, place: Vec3) -> PresetSystem {
+    pub fn at(&self, position: Vec3) -> PresetSystem {
         let mut system = self.system.clone();
         let emitter = &mut system.emitter;
-        emitter.position += place;
-        emitter.attractor += place;
-        emitter.obstacle += place;
-        emitter.floor += place.dot(emitter.up.normalize_or(Vec3::Y));
+        emitter.position += position;
+        emitter.attractor += position;
+        emitter.obstacle += position;
+        emitter.floor += position.dot(emitter.up.normalize_or(Vec3::Y));
         system
     }
 

@@ -75,14 +75,14 @@ impl MaterialSources {
     /// fields in order, at least one, each with its field. Images that belong to the sprite report under `sprite`.
     pub fn load_with_cache(
         &self,
-        pictures: &mut ImageCache<'_>,
+        images: &mut ImageCache<'_>,
     ) -> Result<MaterialAssets, Vec<(&'static str, AssetError)>> {
         let mut errors = Vec::new();
-        let sprite = ok_or_record("sprite", self.load_sprite(pictures), &mut errors);
+        let sprite = ok_or_record("sprite", self.load_sprite(images), &mut errors);
         let mut ramp = |field, name: &str, list| {
             let found = match builtin::find(list, name) {
                 Some(ramp) => ramp.ramp(),
-                None => resolve_image_path(field, name, list).and_then(|file| pictures.ramp(field, file)),
+                None => resolve_image_path(field, name, list).and_then(|file| images.ramp(field, file)),
             };
             ok_or_record(field, found, &mut errors)
         };
@@ -99,9 +99,9 @@ impl MaterialSources {
             ramp("fire_ramp", &self.fire_ramp, builtin::RAMPS),
         );
         let noise = match builtin::find(builtin::NOISES, &self.noise) {
-            Some(noise) => pictures.builtin_noise(noise),
+            Some(noise) => images.builtin_noise(noise),
             None => {
-                resolve_image_path("noise", &self.noise, builtin::NOISES).and_then(|file| pictures.noise("noise", file))
+                resolve_image_path("noise", &self.noise, builtin::NOISES).and_then(|file| images.noise("noise", file))
             }
         };
         let noise = ok_or_record("noise", noise, &mut errors);
@@ -161,23 +161,23 @@ impl MaterialSources {
         names
     }
 
-    fn load_sprite(&self, pictures: &mut ImageCache<'_>) -> Result<SpriteImages, AssetError> {
+    fn load_sprite(&self, images: &mut ImageCache<'_>) -> Result<SpriteImages, AssetError> {
         let ((sprite, detail), layout) = match builtin::find(builtin::SPRITES, &self.sprite) {
-            Some(builtin) => (self.load_builtin(pictures, builtin)?, builtin.sprite_layout()?),
+            Some(builtin) => (self.load_builtin(images, builtin)?, builtin.sprite_layout()?),
             None => {
                 let layout = SpriteLayout { columns: self.columns, rows: self.rows, y_down: false };
                 let path = resolve_image_path("sprite", &self.sprite, builtin::SPRITES)?;
-                let sprite = pictures.sprite("sprite", path, SpriteLayout { y_down: self.y_down, ..layout })?;
-                ((sprite, load_companion(pictures, "detail", &self.detail, layout)?), layout)
+                let sprite = images.sprite("sprite", path, SpriteLayout { y_down: self.y_down, ..layout })?;
+                ((sprite, load_companion(images, "detail", &self.detail, layout)?), layout)
             }
         };
-        let six_way = load_companion(pictures, "six_way", &self.six_way, six_way_layout(layout))?;
+        let six_way = load_companion(images, "six_way", &self.six_way, six_way_layout(layout))?;
         Ok(SpriteImages { sprite, detail, six_way })
     }
 
     fn load_builtin(
         &self,
-        pictures: &mut ImageCache<'_>,
+        images: &mut ImageCache<'_>,
         sprite: &'static Builtin,
     ) -> Result<(Sprite, Option<Sprite>), AssetError> {
         let refuse = |field: &str, value: String, expected: &str| {
@@ -193,13 +193,13 @@ impl MaterialSources {
         if self.y_down {
             return refuse("y_down", self.y_down.to_string(), "false");
         }
-        pictures.builtin_sprite(sprite)
+        images.builtin_sprite(sprite)
     }
 }
 
 /// Loads an image that accompanies a sprite, if one is named.
 fn load_companion(
-    pictures: &mut ImageCache<'_>,
+    images: &mut ImageCache<'_>,
     field: &'static str,
     name: &str,
     layout: SpriteLayout,
@@ -207,7 +207,7 @@ fn load_companion(
     if name.is_empty() {
         return Ok(None);
     }
-    Ok(Some(pictures.sprite(field, resolve_image_path(field, name, &[])?, layout)?))
+    Ok(Some(images.sprite(field, resolve_image_path(field, name, &[])?, layout)?))
 }
 
 /// Sprite with its accompanying images.
@@ -301,7 +301,7 @@ mod tests {
         let absent =
             names.load(ImageSource::Reader(&mut |_| Err(io::ErrorKind::NotFound.into()))).unwrap_err().to_string();
         assert!(absent.starts_with("material.diffuse_ramp: packed/own.png: "), "{absent}");
-        let broken = names.load(ImageSource::Reader(&mut |_| Ok(b"no picture".to_vec()))).unwrap_err().to_string();
+        let broken = names.load(ImageSource::Reader(&mut |_| Ok(b"no image".to_vec()))).unwrap_err().to_string();
         assert!(broken.starts_with("material.diffuse_ramp: packed/own.png: "), "{broken}");
         let large = names.load(ImageSource::Reader(&mut |_| Ok(vec![0; (64 << 20) + 1]))).unwrap_err().to_string();
         assert!(large.contains("at most 64 MiB"), "{large}");

@@ -1,4 +1,4 @@
-//! Particles of a system from files, in place of an emitter.
+//! Particles of a system from files, instead of an emitter.
 
 use std::path::{Component, Path};
 

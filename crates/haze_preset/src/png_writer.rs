@@ -28,17 +28,17 @@ impl CompressionEffort {
 ///
 /// # Errors
 /// [`AssetError::Io`] if the file cannot be written.
-pub fn write_png(path: &Path, picture: &DynamicImage, effort: CompressionEffort) -> Result<(), AssetError> {
-    write_file(path, &encode_png(path, picture, effort)?)
+pub fn write_png(path: &Path, image: &DynamicImage, effort: CompressionEffort) -> Result<(), AssetError> {
+    write_file(path, &encode_png(path, image, effort)?)
 }
 
 /// Encodes an image as PNG. `path` is used only in errors.
-pub fn encode_png(path: &Path, picture: &DynamicImage, effort: CompressionEffort) -> Result<Vec<u8>, AssetError> {
+pub fn encode_png(path: &Path, image: &DynamicImage, effort: CompressionEffort) -> Result<Vec<u8>, AssetError> {
     let encoded = |compression, filter| -> Result<Vec<u8>, AssetError> {
         let mut bytes = Vec::new();
         let encoder = PngEncoder::new_with_quality(&mut bytes, compression, filter);
         let io = |error| AssetError::Io { path: path.into(), error: std::io::Error::other::<ImageError>(error) };
-        picture.write_with_encoder(encoder).map_err(io)?;
+        image.write_with_encoder(encoder).map_err(io)?;
         Ok(bytes)
     };
     match effort {

@@ -209,9 +209,9 @@ impl Preset {
     }
 
     fn load_images(&self, path: &Path, source: ImageSource<'_>) -> Result<Vec<MaterialAssets>, AssetError> {
-        let mut pictures = ImageCache::new(source);
+        let mut images = ImageCache::new(source);
         let load = |(index, system): (usize, &PresetSystem)| {
-            let loaded = system.material.load_with_cache(&mut pictures);
+            let loaded = system.material.load_with_cache(&mut images);
             loaded.map_err(|mut errors| with_system_context(path, index, errors.swap_remove(0).1))
         };
         self.systems.iter().enumerate().map(load).collect()
@@ -329,7 +329,7 @@ mod tests {
 
     #[test]
     fn a_file_with_names_of_before_opens() {
-        let system = r#"{"name": "a", "cache": {"up": "z"}, "settings":
+        let system = r#"{"name": "a", "cache": {"up": "z"}, "emitter": {"small_share": 0.3}, "settings":
             {"accumulate": {"scale": 4}, "density": {"density": 5}, "sprite": {"size": 2, "debug_loop": 3}}}"#;
         let track = |setting: &str, value: &str| {
             format!(r#"{{"setting": "systems[0].{setting}", "keys": [{{"time": 0, "value": {value}}}]}}"#)
@@ -339,6 +339,7 @@ mod tests {
             track("settings.density.density", "6"),
             track("settings.sprite.debug_sprite", "true"),
             track("cache.flipbook_rate", "7"),
+            track("emitter.small_share", "0.4"),
         ];
         let tracks = tracks.join(", ");
         let text = format!(r#"{{"version": 1, "name": "old", "systems": [{system}], "animation": [{tracks}]}}"#);
@@ -348,12 +349,14 @@ mod tests {
         assert_eq!(at_rest.settings.exponential, Exponential { density: 5.0 });
         assert_eq!((at_rest.settings.debug.draw_count, at_rest.settings.sprite.size), (3, 2.0));
         assert_eq!(at_rest.particle_files.up, crate::UpAxis::Z);
+        assert_eq!(at_rest.emitter.small_fraction, 0.3);
         let names: Vec<_> = preset.animation.iter().map(|track| track.setting.as_str()).collect();
         let expected = [
             "systems[0].settings.accumulate.downscale",
             "systems[0].settings.exponential.density",
             "systems[0].settings.debug.checkerboard",
             "systems[0].particle_files.flipbook_rate",
+            "systems[0].emitter.small_fraction",
         ];
         assert_eq!(names, expected);
         let animated = &preset.evaluate(0.0).systems[0];

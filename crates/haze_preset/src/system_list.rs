@@ -33,7 +33,9 @@ pub fn duplicate(preset: &mut Preset, index: usize) -> Result<(), FieldError> {
 pub fn remove(preset: &mut Preset, index: usize) {
     if index < preset.systems.len() {
         preset.systems.remove(index);
-        renumber(&mut preset.animation, |place| (place != index).then(|| place - usize::from(place > index)));
+        renumber(&mut preset.animation, |position| {
+            (position != index).then(|| position - usize::from(position > index))
+        });
     }
 }
 
@@ -43,10 +45,10 @@ pub fn move_to(preset: &mut Preset, from: usize, to: usize) {
     if from < count && to < count {
         let system = preset.systems.remove(from);
         preset.systems.insert(to, system);
-        let mut places: Vec<_> = (0..count).collect();
-        let moved = places.remove(from);
-        places.insert(to, moved);
-        renumber(&mut preset.animation, |index| places.iter().position(|place| *place == index));
+        let mut positions: Vec<_> = (0..count).collect();
+        let moved = positions.remove(from);
+        positions.insert(to, moved);
+        renumber(&mut preset.animation, |index| positions.iter().position(|position| *position == index));
     }
 }
 
@@ -84,7 +86,7 @@ fn insert(preset: &mut Preset, index: usize, mut system: PresetSystem) -> Result
     }
     system.name = free_name(preset, &system.name);
     let mut changed = preset.clone();
-    renumber(&mut changed.animation, |place| Some(place + usize::from(place >= index)));
+    renumber(&mut changed.animation, |position| Some(position + usize::from(position >= index)));
     changed.systems.insert(index, system);
     changed.validate()?;
     *preset = changed;
@@ -104,12 +106,12 @@ fn free_name(preset: &Preset, name: &str) -> String {
     names.find(|name| !is_taken(name)).unwrap_or_else(|| name.into())
 }
 
-/// Gives the tracks of systems the new places of their systems; those of a system without a place are removed.
-fn renumber(tracks: &mut Vec<Track>, place: impl Fn(usize) -> Option<usize>) {
+/// Gives the tracks of systems the new positions of their systems; those of a system without a position are removed.
+fn renumber(tracks: &mut Vec<Track>, position: impl Fn(usize) -> Option<usize>) {
     tracks.retain_mut(|track| {
         let Some(index) = system_of(&track.setting) else { return true };
-        let Some(place) = place(index) else { return false };
-        *track = with_system(track, place);
+        let Some(position) = position(index) else { return false };
+        *track = with_system(track, position);
         true
     });
 }

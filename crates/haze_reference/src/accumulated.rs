@@ -100,8 +100,8 @@ impl AccumulatedTarget<'_> {
         let fit = (0..16).fold(GuidedFit::default(), |fit, i| {
             let offset = IVec2::new(i % 4, i / 4) - 1;
             let at = base + offset;
-            let place = (offset.as_vec2() - fraction).extend(self.guide(at) - depth);
-            add_texel(&fit, place, guided_weight(place, depth), texel_at(at))
+            let position = (offset.as_vec2() - fraction).extend(self.guide(at) - depth);
+            add_texel(&fit, position, guided_weight(position, depth), texel_at(at))
         });
         fitted_value(&fit, fade)
     }

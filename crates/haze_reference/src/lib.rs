@@ -41,12 +41,12 @@ pub struct PreparedFrame<'a> {
 }
 
 impl<'a> PreparedFrame<'a> {
-    /// Places all systems, and computes the shadow of their smoke. `picture`: size of the picture, pixels.
+    /// Places all systems, and computes the shadow of their smoke. `image`: size of the image, pixels.
     ///
     /// # Errors
     /// The first view, light or setting that is invalid.
-    pub fn new(frame: &FrameInput<'a>, picture: UVec2) -> Result<Self, FieldError> {
-        let placed = place_systems(frame, picture)?;
+    pub fn new(frame: &FrameInput<'a>, image: UVec2) -> Result<Self, FieldError> {
+        let placed = place_systems(frame, image)?;
         let volume = placed.shadow.map(|shadow| (shadow, Arc::new(placed.shadow_volume(frame, &shadow))));
         let mut systems = placed.visible;
         let mut scene_shadow = None;
@@ -72,20 +72,20 @@ impl<'a> PreparedFrame<'a> {
         })
     }
 
-    /// Darkens a lit picture of the scene by the shadow of the smoke, as
+    /// Darkens a lit image of the scene by the shadow of the smoke, as
     /// `Renderer::render_scene_shadow` does.
-    pub fn shade_scene(&self, picture: &mut Image<Vec4>) {
+    pub fn shade_scene(&self, image: &mut Image<Vec4>) {
         if let (Some(screen), Some(shadow)) = (&self.screen_shadow, &self.scene_shadow) {
-            screen.shade(shadow, picture);
+            screen.shade(shadow, image);
         }
     }
 
-    /// Blends the smoke over `picture`, linear HDR.
-    pub fn render(&self, picture: &mut Image<Vec4>) {
+    /// Blends the smoke over `image`, linear HDR.
+    pub fn render(&self, image: &mut Image<Vec4>) {
         for (_, visible) in &self.systems {
             if visible.settings.is_forward() {
                 if self.debug_view.shows_lit_smoke() {
-                    visible.forward(picture);
+                    visible.forward(image);
                 }
                 continue;
             }
@@ -105,20 +105,20 @@ impl<'a> PreparedFrame<'a> {
                 smoke.lit = Some(LitTarget { light, slopes });
             }
             if self.debug_view != DebugView::SpecularScatter {
-                smoke.transfer(self.debug_view, picture);
+                smoke.transfer(self.debug_view, image);
             }
             if self.debug_view.shows_glow() {
-                smoke.specular_scatter(picture);
+                smoke.specular_scatter(image);
             }
         }
     }
 }
 
-/// Blends the frame's smoke over `picture`, linear HDR.
+/// Blends the frame's smoke over `image`, linear HDR.
 ///
 /// # Errors
-/// The first view, light or setting that is invalid; `picture` is untouched then.
-pub fn render(frame: &FrameInput<'_>, picture: &mut Image<Vec4>) -> Result<(), FieldError> {
-    PreparedFrame::new(frame, picture.size)?.render(picture);
+/// The first view, light or setting that is invalid; `image` is untouched then.
+pub fn render(frame: &FrameInput<'_>, image: &mut Image<Vec4>) -> Result<(), FieldError> {
+    PreparedFrame::new(frame, image.size)?.render(image);
     Ok(())
 }

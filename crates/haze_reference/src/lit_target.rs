@@ -2,7 +2,7 @@
 
 use glam::{IVec2, Mat4, Vec2, Vec4};
 use haze_core::formula::upsample::{
-    carried_value, four_texels_share, guided_weight, surface_weights, upsample_weights,
+    carried_value, four_texels_weight, guided_weight, surface_weights, upsample_weights,
 };
 use haze_core::settings::Upsample;
 
@@ -43,8 +43,8 @@ impl AccumulatedTarget<'_> {
         let depth = self.visible.scene_view_depth(pixel.as_ivec2()).min(system.smoke_depth_limit);
         let weights = surface_weights(fraction, depths, depth);
         let four = carried_value(weights, values, slopes, depths, depth, 1.0 / system.fade_scale);
-        let share = four_texels_share(weights.element_sum());
-        self.mean_of_sixteen(light, base, fraction, depth).lerp(four, share)
+        let weight = four_texels_weight(weights.element_sum());
+        self.mean_of_sixteen(light, base, fraction, depth).lerp(four, weight)
     }
 
     /// Mean of the sixteen texels around a pixel, mostly of those near its depth.

@@ -18,35 +18,35 @@ pub struct OpticalDepths {
 }
 
 impl OpticalDepths {
-    /// Optical depths towards a block of lights at a place, in cells, clamped to the centers of the outermost cells.
-    pub fn sample(&self, block: usize, place: Vec3) -> Vec3 {
-        self.blocks.get(block).map_or(Vec3::ZERO, |cells| self.sample_cells(cells, place))
+    /// Optical depths towards a block of lights at a position, in cells, clamped to the centers of the outermost cells.
+    pub fn sample(&self, block: usize, position: Vec3) -> Vec3 {
+        self.blocks.get(block).map_or(Vec3::ZERO, |cells| self.sample_cells(cells, position))
     }
 
-    /// Visibility of a block of lights at a place, in cells; 1 without shadow maps.
-    pub fn sample_visible(&self, block: usize, place: Vec3) -> Vec3 {
+    /// Visibility of a block of lights at a position, in cells; 1 without shadow maps.
+    pub fn sample_visible(&self, block: usize, position: Vec3) -> Vec3 {
         let cells = self.visible.as_ref().and_then(|blocks| blocks.get(block));
-        cells.map_or(Vec3::ONE, |cells| self.sample_cells(cells, place))
+        cells.map_or(Vec3::ONE, |cells| self.sample_cells(cells, position))
     }
 
-    /// Openness to sky and ground at a place, in cells; 1 if smoke does not shade ambient light.
-    pub fn sample_openness(&self, place: Vec3) -> Vec3 {
-        self.openness.as_ref().map_or(Vec3::ONE, |cells| self.sample_cells(cells, place))
+    /// Openness to sky and ground at a position, in cells; 1 if smoke does not shade ambient light.
+    pub fn sample_openness(&self, position: Vec3) -> Vec3 {
+        self.openness.as_ref().map_or(Vec3::ONE, |cells| self.sample_cells(cells, position))
     }
 
-    fn sample_cells(&self, cells: &[Vec3], place: Vec3) -> Vec3 {
-        trilinear(self.size, cells, place.clamp(Vec3::splat(0.5), self.size.as_vec3() - 0.5))
+    fn sample_cells(&self, cells: &[Vec3], position: Vec3) -> Vec3 {
+        trilinear(self.size, cells, position.clamp(Vec3::splat(0.5), self.size.as_vec3() - 0.5))
     }
 }
 
-/// Value at a place, in cells, between the centers of eight cells, x first; 0 outside the grid. `sample_density()` in
+/// Value at a position, in cells, between the centers of eight cells, x first; 0 outside the grid. `sample_density()` in
 /// shadow_march.wgsl and shadow_march_slice.wgsl.
-pub fn trilinear<T>(size: UVec3, cells: &[T], place: Vec3) -> T
+pub fn trilinear<T>(size: UVec3, cells: &[T], position: Vec3) -> T
 where
     T: Copy + Default + Add<Output = T> + Mul<f32, Output = T>,
 {
-    let low = (place - 0.5).floor();
-    let high_weight = place - 0.5 - low;
+    let low = (position - 0.5).floor();
+    let high_weight = position - 0.5 - low;
     let low_weight = 1.0 - high_weight;
     let low = low.as_ivec3();
     let size = size.as_ivec3();

@@ -49,7 +49,7 @@ pub struct SystemProbe {
     pub amount: f32,
     /// Amount times `boost`, 0 to 1: the lookup coordinate of the coverage ramp.
     pub coverage_coordinate: f32,
-    /// Share of the background that is hidden.
+    /// Fraction of the background that is hidden.
     pub coverage: f32,
     /// Normal of unit length, view space: z towards the viewer.
     pub normal: Vec3,
@@ -82,7 +82,7 @@ pub struct LightProbe {
     pub coordinate: f32,
     /// Multiplies the light's color.
     pub attenuation: f32,
-    /// Share of the backlight ramp in the light, 0 to 1; the rest comes from the diffuse ramp.
+    /// Fraction of the backlight ramp in the light, 0 to 1; the rest comes from the diffuse ramp.
     pub backlight: f32,
     /// Light added through the diffuse ramp or six-way maps, times the intensity of diffuse light. Modes other than
     /// `ramp` sum lights up differently.
@@ -98,7 +98,7 @@ pub struct LightProbe {
 pub struct ShadowProbe {
     /// Lookup coordinate of the shadow ramp, 0 to 1: smoke before the light, and angle between light and viewer.
     pub coordinate: Vec2,
-    /// Share of the light that comes past the scene and through the smoke.
+    /// Fraction of the light that comes past the scene and through the smoke.
     pub transmittance: Vec3,
 }
 
@@ -107,8 +107,8 @@ pub struct ShadowProbe {
 pub struct FireProbe {
     /// Lookup coordinate of the fire ramp, 0 to 1: mean heat of what burns, and its amount times `boost`.
     pub coordinate: Vec2,
-    /// Share of the visible smoke that burns, 0 to 1.
-    pub share: f32,
+    /// Fraction of the visible smoke that burns, 0 to 1.
+    pub fraction: f32,
     /// Light that it gives.
     pub light: Vec3,
 }
@@ -223,7 +223,7 @@ impl<'a> ProbedSystem<'a> {
                 cosine: surface.normal.dot(sample.direction),
                 coordinate: diffuse_coordinate(surface.normal, sample.direction),
                 attenuation: sample.attenuation,
-                backlight: visible.backlight_share(sample.direction, position),
+                backlight: visible.backlight_fraction(sample.direction, position),
                 diffuse: smoke.diffuse_from_light(light, &surface, covered, position)
                     * visible.system.diffuse_intensity
                     * surface.tint,
@@ -257,7 +257,7 @@ impl VisibleSystem<'_> {
     fn probe_shadow(&self, light: &LightUniform, to_light: Vec3, position: Vec3, shade: &Shade) -> Option<ShadowProbe> {
         let is_shadowed = self.system.shadow_strength > 0.0 && light.shadow_slot >= 0.5;
         is_shadowed.then(|| ShadowProbe {
-            coordinate: self.shadow_place(light, to_light, position, shade),
+            coordinate: self.shadow_position(light, to_light, position, shade),
             transmittance: self.shadow_on_light(light, to_light, position, shade),
         })
     }
@@ -266,8 +266,8 @@ impl VisibleSystem<'_> {
     fn probe_fire(&self, moments: Vec2, amount: f32) -> Option<FireProbe> {
         let fire = fire_from_moments(moments);
         (fire.y > 0.0).then(|| FireProbe {
-            coordinate: self.fire_place(fire, amount),
-            share: fire.y,
+            coordinate: self.fire_position(fire, amount),
+            fraction: fire.y,
             light: self.emission(fire, amount),
         })
     }

@@ -35,7 +35,7 @@ impl SceneShadow {
         self.uniform.indices.into_iter().filter(|index| *index != u32::MAX).map(|index| index as usize)
     }
 
-    /// Share of a light that reaches a point of the world through the smoke. `light`: its index in the frame.
+    /// Fraction of a light that reaches a point of the world through the smoke. `light`: its index in the frame.
     pub fn haze_transmittance(&self, world_position: Vec3, light: usize) -> Vec3 {
         let SceneShadowUniform { origin, cells_per_metre, extent, strength, lights, indices } = self.uniform;
         let found = lights.iter().zip(indices).position(|(_, index)| index as usize == light);

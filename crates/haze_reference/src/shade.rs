@@ -8,7 +8,7 @@ use haze_core::formula::shadow::LIGHT_BLOCKS;
 pub struct Shade {
     /// Optical depths of other smoke towards the lights with shadow.
     pub optical_depths: [Vec3; LIGHT_BLOCKS],
-    /// Share of each of these lights that comes past the scene.
+    /// Fraction of each of these lights that comes past the scene.
     pub visible: [Vec3; LIGHT_BLOCKS],
     /// Openness to sky and ground.
     pub openness: Vec2,

@@ -4,7 +4,7 @@ use glam::{IVec2, Mat3, Vec2, Vec3, Vec3Swizzles, Vec4, Vec4Swizzles};
 use haze_core::formula::depth_moments::depth_moments;
 use haze_core::formula::fire::heat_at;
 use haze_core::formula::grain::{eroded, sample_grain, tilted_normal};
-use haze_core::formula::lighting::painted_share;
+use haze_core::formula::lighting::painted_fraction;
 use haze_core::formula::noise_volume::{noise_coordinate, sample_noise_octaves};
 use haze_core::formula::normal::rotate_normal;
 use haze_core::formula::order::{optical_depth_in_front, order_weight};
@@ -46,9 +46,9 @@ pub struct SpriteSetup {
     pub lod: f32,
     /// Frames shown.
     pub frames: FlipbookFrames,
-    /// Squares only: extent from the center to the left, bottom, right and top, as shares of half a side.
+    /// Squares only: extent from the center to the left, bottom, right and top, as fractions of half a side.
     pub reach: Vec4,
-    /// Share of the particle's life that has passed.
+    /// Fraction of the particle's life that has passed.
     pub age: f32,
     /// Erosion by the grain.
     pub erosion: f32,
@@ -166,7 +166,7 @@ impl VisibleSystem<'_> {
 
     /// Heat of a particle.
     pub fn heat_of(&self, particle: &Particle) -> f32 {
-        let by_age = |ramp| painted_share(self.sample_ramp(ramp, particle.age));
+        let by_age = |ramp| painted_fraction(self.sample_ramp(ramp, particle.age));
         match self.settings.burns() {
             true => by_age(&self.material.heat_ramp) * (f32::from(particle.heat) / 255.0),
             false => 0.0,
@@ -374,16 +374,16 @@ impl VisibleSystem<'_> {
         for i in 0..march_steps {
             let [begin, end] = [i, i + 1].map(|step| march_boundary(step as f32 / march_steps as f32));
             let position = origin + along * (interval.enter + 0.5 * (begin + end) * span);
-            let place = (position - sprite.center) / sprite.radius;
+            let local = (position - sprite.center) / sprite.radius;
             let from_eye = rotation.transpose() * position;
             let coordinate = noise_coordinate(from_eye, system.noise_size, system.noise_offset);
             let texel = sample_noise_octaves(&self.material.noise, coordinate, noise_octaves);
-            let density = volumetric_density(texel.w, volumetric_falloff(place));
+            let density = volumetric_density(texel.w, volumetric_falloff(local));
             let mut amount = density_amount(opacity * (end - begin), density);
             if self.settings.technique == Technique::VolumetricSoft {
                 amount *= self.fade_before(scene, -position.z);
             }
-            normal += volumetric_normal(place, rotation * texel.xyz()) * (amount * transmittance);
+            normal += volumetric_normal(local, rotation * texel.xyz()) * (amount * transmittance);
             transmittance *= 1.0 - amount;
         }
         let total = 1.0 - transmittance;

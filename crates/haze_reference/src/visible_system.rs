@@ -161,14 +161,14 @@ pub struct PlacedSystems<'a> {
     pub shadow: Option<SmokeShadow>,
 }
 
-/// Places the systems of a frame, for a picture of this size.
-pub fn place_systems<'a>(frame: &FrameInput<'a>, picture: UVec2) -> Result<PlacedSystems<'a>, FieldError> {
-    // The picture is the view, whatever its origin in a host's targets.
+/// Places the systems of a frame, for an image of this size.
+pub fn place_systems<'a>(frame: &FrameInput<'a>, image: UVec2) -> Result<PlacedSystems<'a>, FieldError> {
+    // The image is the view, whatever its origin in a host's targets.
     let view = ViewGeometry::new(&View { origin: UVec2::ZERO, ..frame.view })?;
     validate_lights(frame.lights)?;
     validate_shadow_projections(frame.lights.len(), frame.shadow_maps.iter().map(|map| map.projection))?;
     validate_frame_numbers(frame.exposure, frame.time, frame.up, frame.scene_ambient)?;
-    for (name, size) in [("scene_depth", frame.scene_depth.size), ("picture", picture)] {
+    for (name, size) in [("scene_depth", frame.scene_depth.size), ("image", image)] {
         if size != frame.view.size {
             let value = format!("{}x{}", size.x, size.y);
             return Err(FieldError::new(name, value, format!("{}x{}", frame.view.size.x, frame.view.size.y)));

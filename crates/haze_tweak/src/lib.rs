@@ -14,9 +14,9 @@ mod files;
 #[cfg(target_arch = "wasm32")]
 mod page;
 #[cfg(target_arch = "wasm32")]
-mod page_job;
+mod page_image;
 #[cfg(target_arch = "wasm32")]
-mod page_picture;
+mod page_job;
 mod panels;
 mod platform;
 mod session;

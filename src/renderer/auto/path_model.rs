@@ -15,7 +15,7 @@ const RASTER_SQUARE: u32 = 64;
 const STOP_OPTICAL_DEPTH: f64 = 2.0 * 10.0 * std::f64::consts::LN_2;
 /// Fraction of the traversals that never stop: those at the borders of the smoke. With this value and
 /// `STOP_OPTICAL_DEPTH`, the model is within 5 % of an H200 for large sprites.
-const NEVER_OPAQUE_SHARE: f64 = 0.5;
+const NEVER_OPAQUE_FRACTION: f64 = 0.5;
 /// Tolerance of a probe on a CPU: if the measured ratio of the two paths differs from the class's by less than this
 /// factor, it is ignored; otherwise only the excess counts. Reason: other load on the machine slows the traversal 1.5
 /// times more than `raster`, for seconds.
@@ -53,7 +53,7 @@ pub struct PathCosts {
     pub frame: f32,
     /// Per texel of the system's target.
     pub texel: f32,
-    /// Per pixel of the picture that the target covers, whose depth is reduced. 0 on CPUs, where both paths take as long.
+    /// Per pixel of the image that the target covers, whose depth is reduced. 0 on CPUs, where both paths take as long.
     pub pixel: f32,
     /// Per sprite.
     pub sprite: f32,
@@ -67,9 +67,9 @@ pub struct PathCosts {
     pub sphere: f32,
     /// Per texel that a volumetric sprite covers, for each noise octave of each march step.
     pub march: f32,
-    /// Of each texture that is blended behind the first, as a share of `fragment`.
+    /// Of each texture that is blended behind the first, as a fraction of `fragment`.
     pub attachment: f32,
-    /// Of each octave of grain, as a share of `fragment`.
+    /// Of each octave of grain, as a fraction of `fragment`.
     pub octave: f32,
     /// Width and height of the blocks that are shaded whole if a sprite covers any part of one, texels; 0 if only
     /// covered texels cost time.
@@ -254,16 +254,16 @@ impl PathModel {
 
     /// Returns the expected milliseconds of `raster` and of `tiled`.
     pub fn milliseconds(&self, workload: &PathWorkload) -> [f32; 2] {
-        let share = workload.visited_share();
-        [(&self.raster, workload.busiest_core_share(self.cores)), (&self.tiled, share)]
-            .map(|(costs, share)| costs.milliseconds(workload, share))
+        let fraction = workload.visited_fraction();
+        [(&self.raster, workload.busiest_core_fraction(self.cores)), (&self.tiled, fraction)]
+            .map(|(costs, fraction)| costs.milliseconds(workload, fraction))
     }
 }
 
 impl PathCosts {
-    /// Returns the expected milliseconds. `share`: fraction of the sprites' texels that are shaded; above 1 if the pass
+    /// Returns the expected milliseconds. `fraction`: fraction of the sprites' texels that are shaded; above 1 if the pass
     /// waits for the busiest core.
-    pub(crate) fn milliseconds(&self, workload: &PathWorkload, share: f64) -> f32 {
+    pub(crate) fn milliseconds(&self, workload: &PathWorkload, fraction: f64) -> f32 {
         let of_fragment = match workload.technique {
             Technique::SphericalBillboard => f64::from(self.sphere),
             technique if technique.is_volumetric() => f64::from(self.march) * workload.lookups,
@@ -278,7 +278,8 @@ impl PathCosts {
             + f64::from(self.pixel) * workload.texels() * f64::from(workload.scale * workload.scale)
             + f64::from(self.sprite) * workload.sprites
             + f64::from(self.layer) * workload.layers()
-            + (f64::from(self.entry) * workload.entries() + of_fragment * workload.texels_shaded(self.block)) * share;
+            + (f64::from(self.entry) * workload.entries() + of_fragment * workload.texels_shaded(self.block))
+                * fraction;
         (nanoseconds * 1.0e-6) as f32
     }
 
@@ -312,9 +313,9 @@ impl PathWorkload {
         self.size.as_dvec2().element_product()
     }
 
-    /// Returns the work of the core with the largest square, relative to an even share: 1 if there are enough squares
+    /// Returns the work of the core with the largest square, relative to an even fraction: 1 if there are enough squares
     /// for all cores.
-    fn busiest_core_share(&self, cores: u32) -> f64 {
+    fn busiest_core_fraction(&self, cores: u32) -> f64 {
         let largest = self.size.min(UVec2::splat(RASTER_SQUARE)).as_dvec2().element_product();
         (f64::from(cores) * largest / self.texels().max(1.0)).max(1.0)
     }
@@ -342,10 +343,10 @@ impl PathWorkload {
     }
 
     /// Returns the mean fraction of the sprites that a traversal visits before it stops. Assumes that overdraw is
-    /// distributed exponentially over the texels: most layers lie in few places.
-    fn visited_share(&self) -> f64 {
+    /// distributed exponentially over the texels: most layers lie in few texels.
+    fn visited_fraction(&self) -> f64 {
         let layers_seen = STOP_OPTICAL_DEPTH / self.optical_depth.max(1.0e-6);
-        1.0 - (1.0 - NEVER_OPAQUE_SHARE) * (-layers_seen / self.layers().max(1.0e-6)).exp()
+        1.0 - (1.0 - NEVER_OPAQUE_FRACTION) * (-layers_seen / self.layers().max(1.0e-6)).exp()
     }
 }
 

@@ -24,7 +24,7 @@ pub struct PathWorkload {
     pub fragments: f64,
     /// Size of the target, texels.
     pub size: UVec2,
-    /// Pixels of the picture per texel, along each side.
+    /// Pixels of the image per texel, along each side.
     pub scale: u32,
     /// Mean optical depth of a sprite, −ln(1 − amount), over the texels that it covers; 0 if no layer may be skipped.
     pub optical_depth: f64,
@@ -74,8 +74,8 @@ pub(crate) fn estimate_workload(
             let step = particles.len().div_ceil(SAMPLE).max(1);
             let sample = particles.iter().step_by(step).filter(|particle: &&Particle| particle.is_visible());
             let (areas, depths) = projector.coverages(grid, sample).fold((0.0, 0.0), |(areas, depths), sprite| {
-                // `optical_depth` is the mean over the whole square; only the share that is not trimmed is covered.
-                let depth = f64::from(optical_depth(sprite.particle, settings)) / sprite.share.max(1.0e-6);
+                // `optical_depth` is the mean over the whole square; only the fraction that is not trimmed is covered.
+                let depth = f64::from(optical_depth(sprite.particle, settings)) / sprite.fraction.max(1.0e-6);
                 (areas + sprite.texels, depths + sprite.texels * depth)
             });
             (areas * step as f64 * f64::from(each), depths / f64::max(areas, 1.0e-9))

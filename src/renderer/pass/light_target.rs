@@ -101,7 +101,7 @@ impl TexelKey for LightingKey {
     }
 }
 
-/// Returns the textures of `READS`, with `first` in place of the first attachment.
+/// Returns the textures of `READS`, with `first` instead of the first attachment.
 pub(crate) fn accumulated<'a>(
     textures: SystemTextures<'a>,
     first: &'a wgpu::TextureView,

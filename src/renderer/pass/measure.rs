@@ -83,7 +83,7 @@ impl Measure {
             pass.set_pipeline(pipeline);
             pass.dispatch_workgroups(workgroups, 1, 1);
         }
-        let place = offset_of!(SystemUniform, center) as u64;
-        encoder.commands().copy_buffer_to_buffer(&self.measured, 0, &self.system, place, EXTENT_BYTES);
+        let offset = offset_of!(SystemUniform, center) as u64;
+        encoder.commands().copy_buffer_to_buffer(&self.measured, 0, &self.system, offset, EXTENT_BYTES);
     }
 }

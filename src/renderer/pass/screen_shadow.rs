@@ -1,4 +1,4 @@
-//! screen_shadow: darkens the host's lit picture by the shadow of the smoke.
+//! screen_shadow: darkens the host's lit image by the shadow of the smoke.
 //!
 //! Reads: scene depth, lights, shadow maps, optical depths towards the lights, shadow ramp.
 //! Writes: the host's color target.

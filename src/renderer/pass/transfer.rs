@@ -98,7 +98,7 @@ pub(crate) fn inputs(
     groups.get("transfer", || pipelines.bind_textures(accumulated(textures, first)))
 }
 
-/// Returns group 3 with counted layers in place of the first texture, if they are counted.
+/// Returns group 3 with counted layers instead of the first texture, if they are counted.
 pub(crate) fn overdraw_inputs(
     pipelines: &PipelineVariants<TransferKey>,
     textures: SystemTextures<'_>,
@@ -116,7 +116,7 @@ pub(crate) struct Transfer {
     pub groups: Groups,
     /// Group 3: the targets.
     pub inputs: wgpu::BindGroup,
-    /// As `inputs`, with counted layers in place of the first texture.
+    /// As `inputs`, with counted layers instead of the first texture.
     pub overdraw_inputs: Option<wgpu::BindGroup>,
     /// Present if smoke is lit at the target's resolution.
     pub lit: Option<LitInputs>,
@@ -127,7 +127,7 @@ pub(crate) struct Transfer {
 pub(crate) struct LitInputs {
     /// Group 3.
     pub group: wgpu::BindGroup,
-    /// Number of tiles, which it draws in place of the box.
+    /// Number of tiles, which it draws instead of the box.
     pub tiles: u32,
 }
 

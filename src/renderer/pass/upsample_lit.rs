@@ -61,7 +61,7 @@ impl LitPixelKey {
 /// Key of an upsample_lit pipeline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct UpsampleLitKey {
-    /// True to filter places without slopes by the hardware: depth_slopes has computed which.
+    /// True to filter positions without slopes by the hardware: depth_slopes has computed which.
     pub slope_cells: bool,
     pub pixel: LitPixelKey,
 }

@@ -201,7 +201,7 @@ fn one_of_each_covers_every_pass() {
         assert!(deferred.transfers().count() == 1 && deferred.specular_scatter.is_some());
         assert!(tiled.tiled.is_some() && deferred.tiled.is_none());
         assert!(tiled.texels.upsample_lit.is_some() && lit.texels.upsample_lit.is_none());
-        // The last target of the last pass: all before it have found a place.
+        // The last target of the last pass: all before it have found a slot.
         let targets = tiled.texels.targets();
         assert!(targets.iter().flatten().any(|planned| planned.target == PIXELS), "{targets:?}");
     }

@@ -14,11 +14,11 @@ pub(crate) struct Composed {
     /// File from which the text was composed.
     pub path: PathBuf,
     /// Origin of each line.
-    places: Vec<Place>,
+    locations: Vec<Location>,
 }
 
 #[derive(Clone, Debug)]
-struct Place {
+struct Location {
     path: Arc<Path>,
     /// 1-based.
     line: usize,
@@ -34,9 +34,9 @@ impl Composed {
     /// Creates an error for a line and column of the composed text, located in the file that contains it. Lines beyond
     /// the end count as the last line.
     pub fn error_at(&self, line: usize, column: usize, reason: &str) -> PrepareError {
-        let index = line.clamp(1, self.places.len().max(1)) - 1;
-        let (path, line) = match self.places.get(index) {
-            Some(place) => (&*place.path, place.line),
+        let index = line.clamp(1, self.locations.len().max(1)) - 1;
+        let (path, line) = match self.locations.get(index) {
+            Some(location) => (&*location.path, location.line),
             None => (&*self.path, 1),
         };
         PrepareError::Shader { path: path.into(), line, column, reason: one_line(reason) }
@@ -58,7 +58,7 @@ impl Sources {
     }
 
     fn compose_file(&self, file: &File) -> Result<Composed, PrepareError> {
-        let composed = Composed { text: String::new(), path: file.path.to_path_buf(), places: Vec::new() };
+        let composed = Composed { text: String::new(), path: file.path.to_path_buf(), locations: Vec::new() };
         let mut composer = Composer { sources: self, composed, done: Vec::new(), open: Vec::new() };
         composer.append(file)?;
         Ok(composer.composed)
@@ -81,7 +81,7 @@ impl<'a> Composer<'a> {
             let Some(import) = import(text) else {
                 self.composed.text.push_str(text);
                 self.composed.text.push('\n');
-                self.composed.places.push(Place { path: file.path.clone(), line });
+                self.composed.locations.push(Location { path: file.path.clone(), line });
                 continue;
             };
             let refuse = |reason| Err(file.error_at(line, IMPORT_COLUMN, reason));

@@ -30,9 +30,9 @@ pub fn compose(text: &str) -> Result<String, String> {
     }
 }
 
-/// Returns the WGSL function `haze_transmittance(world_position: vec3f, light: u32) -> vec3f` for a host's shaders: the share
-/// of a light that reaches a point through the smoke. It is composed text, to be placed before the host's own. `group`: the
-/// group at which the host binds [`Renderer::scene_shadow_bind_group`](crate::Renderer::scene_shadow_bind_group).
+/// Returns the WGSL function `haze_transmittance(world_position: vec3f, light: u32) -> vec3f` for a host's shaders: the
+/// fraction of a light that reaches a point through the smoke. It is composed text, to be placed before the host's own.
+/// `group`: the group at which the host binds [`Renderer::scene_shadow_bind_group`](crate::Renderer::scene_shadow_bind_group).
 pub fn scene_shadow_wgsl(group: u32) -> String {
     let text = Sources::embedded().compose_text("#import \"lib/haze_transmittance.wgsl\"\n");
     // The embedded file exists: the tests compose it.

@@ -40,10 +40,10 @@ pub(crate) fn checked_shader(
         Err(reason) => Err(sources.find_unclosed_bracket().unwrap_or_else(|| {
             let info = poll_once(shader.module(device).get_compilation_info());
             match info.and_then(|info| info.messages.into_iter().next()) {
-                Some(wgpu::CompilationMessage { message, location: Some(place), .. }) => {
+                Some(wgpu::CompilationMessage { message, location: Some(location), .. }) => {
                     let naga_location = || {
-                        let line = place.line_number as usize;
-                        (line, composed.column(line, place.line_position as usize))
+                        let line = location.line_number as usize;
+                        (line, composed.column(line, location.line_position as usize))
                     };
                     let (line, column) = marked_location(&message, &composed.text).unwrap_or_else(naga_location);
                     composed.error_at(line, column, &to_wgsl_terms(&message))

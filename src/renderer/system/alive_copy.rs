@@ -25,7 +25,7 @@ impl AliveCopy {
     }
 
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
-        let place = offset_of!(SystemUniform, alive_count) as u64;
-        encoder.copy_buffer_to_buffer(&self.source, self.offset, &self.system, place, wgpu::COPY_BUFFER_ALIGNMENT);
+        let offset = offset_of!(SystemUniform, alive_count) as u64;
+        encoder.copy_buffer_to_buffer(&self.source, self.offset, &self.system, offset, wgpu::COPY_BUFFER_ALIGNMENT);
     }
 }

@@ -107,7 +107,7 @@ const MAX_BYTES_PER_SAMPLE: u32 = 32;
 /// format.
 pub(crate) type TiledFormats = [wgpu::TextureFormat; MAX_TARGET_ATTACHMENTS];
 
-/// Format of the placeholders that tile_accumulate binds in place of textures that a system does not have, and the
+/// Format of the placeholders that tile_accumulate binds instead of textures that a system does not have, and the
 /// format of all targets in `shaders/tile_accumulate.wgsl`.
 pub(crate) const PLACEHOLDER_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 

@@ -22,7 +22,7 @@ pub(crate) struct AccumulateVariants {
     /// Layouts of groups 0 to 2.
     groups: [wgpu::BindGroupLayout; 3],
     store: PipelineStore,
-    /// Textures of one texel, bound in place of textures that a system does not have. One per slot, because no texture
+    /// Textures of one texel, bound instead of textures that a system does not have. One per slot, because no texture
     /// may be bound for writing twice.
     pub placeholders: [wgpu::TextureView; MAX_TARGET_ATTACHMENTS],
     /// Shared by contexts with the same shader.

@@ -6,7 +6,7 @@ use super::Formula;
 use super::inputs::{ARITHMETIC, random, unit_vectors, v3};
 
 const SIDE: (f32, f32) = (-1.0, 1.0);
-const SHARE: (f32, f32) = (0.0, 1.0);
+const FRACTION: (f32, f32) = (0.0, 1.0);
 
 pub fn formulas() -> Vec<Formula> {
     vec![
@@ -24,7 +24,10 @@ pub fn formulas() -> Vec<Formula> {
             file: "lib/ambient.wgsl",
             wgsl: "y(0, six_way_hemisphere(vec3f(x(0), x(1), x(2)), vec3f(x(3), x(4), x(5)), vec3f(x(6), x(7), x(8))));",
             reference: |x| vec![six_way_hemisphere(v3(x), v3(&x[3..]), v3(&x[6..]))],
-            cases: unit_vectors(random(60, &[SHARE, SHARE, SHARE, SHARE, SHARE, SHARE, SIDE, SIDE, SIDE]), 6),
+            cases: unit_vectors(
+                random(60, &[FRACTION, FRACTION, FRACTION, FRACTION, FRACTION, FRACTION, SIDE, SIDE, SIDE]),
+                6,
+            ),
             tolerance: ARITHMETIC * 10.0,
             mutants: &[("positive - negative", "negative - positive"), ("0.5 * (dot", "(dot")],
         },

@@ -6,7 +6,7 @@ use super::Formula;
 use super::fixture::{DEFAULTS, visible_system};
 use super::inputs::{ARITHMETIC, TRANSCENDENTAL, random, v2};
 
-const SHARE: (f32, f32) = (0.0, 1.0);
+const FRACTION: (f32, f32) = (0.0, 1.0);
 
 pub fn formulas() -> Vec<Formula> {
     vec![
@@ -15,7 +15,7 @@ pub fn formulas() -> Vec<Formula> {
             file: "lib/fire.wgsl",
             wgsl: "y(0, heat_at(x(0), x(1), x(2), x(3), x(4)));",
             reference: |x| vec![heat_at(x[0], x[1], x[2], x[3], x[4])],
-            cases: random(60, &[SHARE, SHARE, (-1.0, 1.0), SHARE, SHARE]),
+            cases: random(60, &[FRACTION, FRACTION, (-1.0, 1.0), FRACTION, FRACTION]),
             tolerance: ARITHMETIC,
             mutants: &[
                 ("core * (1.0 - thickness)", "core * thickness"),
@@ -48,7 +48,7 @@ pub fn formulas() -> Vec<Formula> {
                 visible.system.fire_intensity = 3.0;
                 visible.emission(v2(x), x[2]).to_array().to_vec()
             },
-            cases: random(100, &[SHARE, SHARE, SHARE]),
+            cases: random(100, &[FRACTION, FRACTION, FRACTION]),
             tolerance: TRANSCENDENTAL,
             mutants: &[
                 ("amount, system.boost) * system.fire_intensity", "amount, system.boost)"),

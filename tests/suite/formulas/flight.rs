@@ -74,7 +74,7 @@ pub(super) fn test_emitter(x: &[f32]) -> EmitterUniform {
         attractor_size: 0.6,
         orbit_rate: 0.2,
         has_flow: 1,
-        small_share: 0.3,
+        small_fraction: 0.3,
         small_size: 0.6,
         floor_margin: 0.5,
         obstacle_margin: 0.6,

@@ -64,8 +64,8 @@ pub fn formulas() -> Vec<Formula> {
             cases: random(100, &[NEAR[0], NEAR[1], NEAR[2], (-3.0, 1.0), (-3.0, 0.0)]),
             tolerance: TRANSCENDENTAL,
             mutants: &[
-                ("smoothstep_unit(2.0 - 2.0 * share)", "1.0"),
-                ("smoothstep_unit(2.0 * share)", "share"),
+                ("smoothstep_unit(2.0 - 2.0 * fraction)", "1.0"),
+                ("smoothstep_unit(2.0 * fraction)", "fraction"),
                 ("last + 1.0", "last"),
             ],
         },

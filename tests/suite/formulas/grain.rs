@@ -5,15 +5,15 @@ use haze_core::formula::grain;
 use super::Formula;
 use super::inputs::{ARITHMETIC, random, test_noise, v2, v3};
 
-const SHARE: (f32, f32) = (0.0, 1.0);
+const FRACTION: (f32, f32) = (0.0, 1.0);
 
 pub fn formulas() -> Vec<Formula> {
     vec![
         Formula {
-            name: "octave_share",
+            name: "octave_fraction",
             file: "lib/grain.wgsl",
-            wgsl: "y(0, octave_share(x(0)));",
-            reference: |x| vec![grain::octave_share(x[0])],
+            wgsl: "y(0, octave_fraction(x(0)));",
+            reference: |x| vec![grain::octave_fraction(x[0])],
             cases: random(60, &[(0.0, 4.0)]),
             tolerance: ARITHMETIC,
             mutants: &[("- 0.5)", ")"), ("1.5 / max(fineness, 1.0e-6)", "1.5 * fineness")],
@@ -24,7 +24,7 @@ pub fn formulas() -> Vec<Formula> {
             wgsl: "let uv = vec2f(x(0), x(1)); \
                    y3(0, sample_grain(test_noise, test_sampler, uv, x(2), x(3), x(4), u32(x(5))));",
             reference: |x| grain::sample_grain(test_noise(), v2(x), x[2], x[3], x[4], x[5] as u32).to_array().to_vec(),
-            cases: random(200, &[SHARE, SHARE, SHARE, (0.5, 4.0), (0.1, 1.5), (1.0, 3.99)]),
+            cases: random(200, &[FRACTION, FRACTION, FRACTION, (0.5, 4.0), (0.1, 1.5), (1.0, 3.99)]),
             // Rounding errors of coordinates are multiplied by 9 in the third octave.
             tolerance: 2e-4,
             mutants: &[
@@ -34,7 +34,7 @@ pub fn formulas() -> Vec<Formula> {
                 ("sum.w - MIDDLE_DENSITY * total", "sum.w - MIDDLE_DENSITY"),
                 ("2.0 * sum.xyz", "sum.xyz"),
                 ("fine *= 3.0", "fine *= 1.0"),
-                ("place *= 3.0", "place *= 2.0"),
+                ("position *= 3.0", "position *= 2.0"),
                 ("weight *= 0.5", "weight *= 1.0"),
             ],
         },
@@ -43,7 +43,7 @@ pub fn formulas() -> Vec<Formula> {
             file: "lib/grain.wgsl",
             wgsl: "y(0, sprite_erosion(x(0), x(1), x(2)));",
             reference: |x| vec![grain::sprite_erosion(x[0], x[1], x[2])],
-            cases: random(60, &[SHARE, SHARE, (-0.2, 1.3)]),
+            cases: random(60, &[FRACTION, FRACTION, (-0.2, 1.3)]),
             tolerance: ARITHMETIC,
             mutants: &[("dissolve * saturate(age)", "dissolve"), ("saturate(age)", "age")],
         },
@@ -52,7 +52,7 @@ pub fn formulas() -> Vec<Formula> {
             file: "lib/grain.wgsl",
             wgsl: "y(0, eroded(x(0), x(1), x(2)));",
             reference: |x| vec![grain::eroded(x[0], x[1], x[2])],
-            cases: random(100, &[SHARE, (-1.0, 1.0), SHARE]),
+            cases: random(100, &[FRACTION, (-1.0, 1.0), FRACTION]),
             // A difference is divided by as little as 0.01.
             tolerance: 1e-4,
             mutants: &[
@@ -62,13 +62,13 @@ pub fn formulas() -> Vec<Formula> {
             ],
         },
         Formula {
-            name: "kept_share",
+            name: "kept_fraction",
             file: "lib/grain.wgsl",
-            wgsl: "y(0, kept_share(x(0), x(1)));",
-            reference: |x| vec![grain::kept_share(x[0], x[1])],
-            cases: random(60, &[SHARE, SHARE]),
+            wgsl: "y(0, kept_fraction(x(0), x(1)));",
+            reference: |x| vec![grain::kept_fraction(x[0], x[1])],
+            cases: random(60, &[FRACTION, FRACTION]),
             tolerance: ARITHMETIC,
-            mutants: &[("(1.0 - eroded_share) * erosion", "eroded_share * erosion")],
+            mutants: &[("(1.0 - eroded_fraction) * erosion", "eroded_fraction * erosion")],
         },
         Formula {
             name: "tilted_normal",

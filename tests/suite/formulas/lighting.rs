@@ -177,10 +177,10 @@ fn coverages() -> Vec<Formula> {
             mutants: &[("saturate(amount * boost)", "amount * boost")],
         },
         Formula {
-            name: "painted_share",
+            name: "painted_fraction",
             file: "lib/lighting.wgsl",
-            wgsl: "y(0, painted_share(vec3f(x(0), x(1), x(2))));",
-            reference: |x| vec![lighting::painted_share(v3(x))],
+            wgsl: "y(0, painted_fraction(vec3f(x(0), x(1), x(2))));",
+            reference: |x| vec![lighting::painted_fraction(v3(x))],
             cases: random(100, &[(0.0, 1.3); 3]),
             tolerance: 1e-5,
             mutants: &[("luminance(paint)", "paint.r"), ("srgb_from_linear(saturate", "(saturate")],

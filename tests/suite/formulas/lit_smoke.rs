@@ -172,7 +172,7 @@ fn lit_targets() -> Vec<Formula> {
             mutants: &[
                 ("UPSAMPLE != UPSAMPLE_GUIDED || system.scale == 1u", "system.scale == 1u"),
                 ("textureLoad(depth_slopes, at[1], 0)", "vec4f(0.0)"),
-                ("mix(mean_of_sixteen(base, fraction, depth), four, share)", "four"),
+                ("mix(mean_of_sixteen(base, fraction, depth), four, weight)", "four"),
                 (
                     "if any(texel < vec2f(0.0)) || any(texel >= system.target_size) {\n        return vec4f(0.0);\n    }\n    if !EXACT",
                     "if !EXACT",
@@ -213,7 +213,7 @@ fn shaded_system(settings: &Settings, has_shadow: bool) -> VisibleSystem<'_> {
     visible
 }
 
-const SHARE: (f32, f32) = (0.0, 1.0);
+const FRACTION: (f32, f32) = (0.0, 1.0);
 
 /// Sky and ground, before the test's own lines. `x[6..9]` is up.
 macro_rules! sky {
@@ -332,7 +332,7 @@ fn diffuse() -> Vec<Formula> {
                 visible.ambient_from_ramp(v3(&x[3..]), x[2], v2(x)).to_array().to_vec()
             },
             cases: unit_vectors(
-                unit_vectors(random(100, &[SHARE, SHARE, SHARE, SIDE, SIDE, SIDE, SIDE, SIDE, SIDE]), 3),
+                unit_vectors(random(100, &[FRACTION, FRACTION, FRACTION, SIDE, SIDE, SIDE, SIDE, SIDE, SIDE]), 3),
                 6,
             ),
             tolerance: TRANSCENDENTAL,
@@ -359,7 +359,10 @@ fn diffuse() -> Vec<Formula> {
                 let six_way = SixWay { positive: Vec3::new(x[2], x[3], x[4]), negative: Vec3::new(x[4], x[2], x[3]) };
                 visible.ambient_from_six_way(&six_way, v2(x)).to_array().to_vec()
             },
-            cases: unit_vectors(random(100, &[SHARE, SHARE, SHARE, SHARE, SHARE, SHARE, SIDE, SIDE, SIDE]), 6),
+            cases: unit_vectors(
+                random(100, &[FRACTION, FRACTION, FRACTION, FRACTION, FRACTION, FRACTION, SIDE, SIDE, SIDE]),
+                6,
+            ),
             tolerance: TRANSCENDENTAL,
             mutants: &[
                 ("six_way.negative, -system.up)", "six_way.negative, system.up)"),

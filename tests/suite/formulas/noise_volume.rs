@@ -45,7 +45,7 @@ pub fn formulas() -> Vec<Formula> {
             // The rounding error of a coordinate is multiplied by 27 in the fourth octave.
             tolerance: 2e-4,
             mutants: &[
-                ("place *= 3.0", "place *= 2.0"),
+                ("position *= 3.0", "position *= 2.0"),
                 ("weight *= 0.5", "weight *= 1.0"),
                 ("sum / total", "sum"),
                 ("texel.rgb * 2.0 - 1.0", "texel.rgb"),

@@ -19,7 +19,7 @@ pub fn formulas() -> Vec<Formula> {
             // Depths before the first knot, between knots, and beyond the last.
             cases: random(200, &[[(-2.0, 14.0), (3.0, 4.0), (5.0, 8.0)].as_slice(), &[(0.0, 9.0); 16]].concat()),
             tolerance: ARITHMETIC * 10.0,
-            mutants: &[("through * 0.5 + 0.25", "through"), ("place - f32(low)", "0.0"), ("low + 1u", "low")],
+            mutants: &[("through * 0.5 + 0.25", "through"), ("position - f32(low)", "0.0"), ("low + 1u", "low")],
         },
         Formula {
             name: "order_weight",

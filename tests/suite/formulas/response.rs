@@ -7,7 +7,7 @@ use haze_core::settings::{Backlight, RampFilter};
 use super::Formula;
 use super::inputs::{ARITHMETIC, TRANSCENDENTAL, count, random, test_ramp, unit_vectors, v2, v3, with_choices};
 
-const SHARE: (f32, f32) = (0.0, 1.0);
+const FRACTION: (f32, f32) = (0.0, 1.0);
 const SIDE: (f32, f32) = (-1.0, 1.0);
 
 pub fn formulas() -> Vec<Formula> {
@@ -26,7 +26,7 @@ pub fn formulas() -> Vec<Formula> {
             },
             cases: unit_vectors(
                 unit_vectors(
-                    with_choices(count(Backlight::ALL), &[SIDE, SIDE, SIDE, SIDE, SIDE, SIDE, SHARE, SHARE]),
+                    with_choices(count(Backlight::ALL), &[SIDE, SIDE, SIDE, SIDE, SIDE, SIDE, FRACTION, FRACTION]),
                     1,
                 ),
                 4,
@@ -52,7 +52,7 @@ pub fn formulas() -> Vec<Formula> {
                 let colors = [Vec3::new(0.9, 0.2, 0.4), Vec3::new(0.1, 0.6, 0.3)];
                 soft_scatter_curve(x[0], colors[0], colors[1], x[1], x[2]).to_array().to_vec()
             },
-            cases: random(100, &[SHARE; 3]),
+            cases: random(100, &[FRACTION; 3]),
             tolerance: ARITHMETIC * 10.0,
             mutants: &[
                 ("mix(scatter_color, ambient_color", "mix(ambient_color, scatter_color"),
@@ -64,7 +64,7 @@ pub fn formulas() -> Vec<Formula> {
             file: "lib/response.wgsl",
             wgsl: "y3(0, fire_response(test_ramp, test_sampler, vec2f(x(0), x(1)), x(2), x(3)));",
             reference: |x| fire_response(&test_ramp(), RampFilter::Bilinear, v2(x), x[2], x[3]).to_array().to_vec(),
-            cases: random(100, &[SHARE, SHARE, SHARE, (0.5, 2.0)]),
+            cases: random(100, &[FRACTION, FRACTION, FRACTION, (0.5, 2.0)]),
             tolerance: TRANSCENDENTAL,
             mutants: &[
                 ("coverage(amount * fire.y, boost)", "coverage(amount, boost)"),

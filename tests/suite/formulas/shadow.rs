@@ -176,7 +176,7 @@ fn lookups() -> Vec<Formula> {
             cases: unit_vectors(with_choices(48, &[SIDE, SIDE, SIDE]), 1),
             // The sine of a large angle.
             tolerance: TRANSCENDENTAL * 10.0,
-            mutants: &[("sqrt(place.x)", "place.x"), ("0.7548777, 0.5698403", "0.5698403, 0.7548777")],
+            mutants: &[("sqrt(position.x)", "position.x"), ("0.7548777, 0.5698403", "0.5698403, 0.7548777")],
         },
         Formula {
             name: "own_at_mean_depth",
@@ -270,10 +270,10 @@ fn on_screen() -> Vec<Formula> {
             mutants: &[("cross(across, up)", "cross(up, across)"), ("center - left", "left - center")],
         },
         Formula {
-            name: "share_of_light",
+            name: "fraction_of_light",
             file: "lib/screen_shadow.wgsl",
-            wgsl: "y3(0, share_of_light(vec3f(x(0), x(1), x(2)), vec3f(x(3), x(4), x(5))));",
-            reference: |x| screen_shadow::share_of_light(v3(x), v3(&x[3..])).to_array().to_vec(),
+            wgsl: "y3(0, fraction_of_light(vec3f(x(0), x(1), x(2)), vec3f(x(3), x(4), x(5))));",
+            reference: |x| screen_shadow::fraction_of_light(v3(x), v3(&x[3..])).to_array().to_vec(),
             cases: random(60, &[(0.5, 4.0), (0.5, 4.0), (0.5, 4.0), (0.0, 4.0), (0.0, 4.0), (0.0, 4.0)]),
             tolerance: ARITHMETIC,
             mutants: &[("(shaded + 1.0e-6) / (full + 1.0e-6)", "shaded")],
@@ -305,12 +305,12 @@ fn by_depth() -> Vec<Formula> {
             mutants: &[("moments.y - moments.x * moments.x", "moments.y"), ("* 1.7320508", "")],
         },
         Formula {
-            name: "shadow_map_place",
+            name: "shadow_map_position",
             file: "lib/shadow_map.wgsl",
-            wgsl: "let p = shadow_map_place(vec4f(x(0), x(1), x(2), x(3))); y3(0, p.xyz * p.w); y(3, p.w);",
+            wgsl: "let p = shadow_map_position(vec4f(x(0), x(1), x(2), x(3))); y3(0, p.xyz * p.w); y(3, p.w);",
             reference: |x| {
-                let place = shadow_map::shadow_map_place(glam::Vec4::new(x[0], x[1], x[2], x[3]));
-                (place.truncate() * place.w).extend(place.w).to_array().to_vec()
+                let position = shadow_map::shadow_map_position(glam::Vec4::new(x[0], x[1], x[2], x[3]));
+                (position.truncate() * position.w).extend(position.w).to_array().to_vec()
             },
             cases: random(120, &[(-1.5, 1.5), (-1.5, 1.5), (-0.5, 1.5), (-0.5, 1.5)]),
             tolerance: ARITHMETIC * 10.0,

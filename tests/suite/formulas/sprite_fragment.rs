@@ -274,8 +274,8 @@ fn spheres() -> Vec<Formula> {
                     "spherical_billboard_amount(density, 0.0",
                 ),
                 (
-                    "let place = unrotate(interval.axis.xy, in.rotation) / radius;",
-                    "let place = interval.axis.xy / radius;",
+                    "let position = unrotate(interval.axis.xy, in.rotation) / radius;",
+                    "let position = interval.axis.xy / radius;",
                 ),
                 ("in.view_position.xy * view.orthographic, 0.0", "vec2f(0.0), 0.0"),
             ],

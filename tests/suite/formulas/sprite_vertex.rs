@@ -242,11 +242,11 @@ fn projection() -> Vec<Formula> {
             // Corners close to the near plane are far outside the view.
             tolerance: 1e-3,
             mutants: &[
-                ("place.x * out.rotation.x - place.y", "place.x * out.rotation.x + place.y"),
+                ("position.x * out.rotation.x - position.y", "position.x * out.rotation.x + position.y"),
                 ("turned = stretched(turned, out.stretch)", "turned = unstretched(turned, out.stretch)"),
                 ("min(center.z, -view.near)", "center.z"),
                 (" || index >= system.alive_count", ""),
-                ("let place = trimmed_corner(corner, ", "let place = trimmed_corner(corner, 0.5 * "),
+                ("let position = trimmed_corner(corner, ", "let position = trimmed_corner(corner, 0.5 * "),
             ],
         },
     ]

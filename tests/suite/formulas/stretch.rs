@@ -8,7 +8,7 @@ use super::Formula;
 use super::inputs::{ARITHMETIC, TRANSCENDENTAL, random, v2, v3};
 
 pub fn formulas() -> Vec<Formula> {
-    [motion(), widths(), places(), particles()].into_iter().flatten().collect()
+    [motion(), widths(), positions(), particles()].into_iter().flatten().collect()
 }
 
 fn motion() -> Vec<Formula> {
@@ -64,10 +64,10 @@ fn moving() -> Vec<Vec<f32>> {
 
 fn widths() -> Vec<Formula> {
     vec![Formula {
-        name: "widened_share",
+        name: "widened_fraction",
         file: "lib/stretch.wgsl",
-        wgsl: "y(0, widened_share(x(0), x(1), vec2f(x(2), x(3)), vec2f(x(4), x(5))));",
-        reference: |x| vec![stretch::widened_share(x[0], x[1], v2(&x[2..]), v2(&x[4..]))],
+        wgsl: "y(0, widened_fraction(x(0), x(1), vec2f(x(2), x(3)), vec2f(x(4), x(5))));",
+        reference: |x| vec![stretch::widened_fraction(x[0], x[1], v2(&x[2..]), v2(&x[4..]))],
         cases: random(80, &[(0.0, 1.0), (0.2, 2.0), (-0.6, 0.6), (-0.6, 0.6), (-0.4, 0.4), (-0.4, 0.4)]),
         tolerance: ARITHMETIC * 4.0,
         mutants: &[
@@ -78,7 +78,7 @@ fn widths() -> Vec<Formula> {
     }]
 }
 
-fn places() -> Vec<Formula> {
+fn positions() -> Vec<Formula> {
     let cases = || random(60, &[(-2.0, 2.0), (-2.0, 2.0), (-0.6, 0.6), (-0.6, 0.6), (0.1, 1.0)]);
     vec![
         Formula {
@@ -88,7 +88,10 @@ fn places() -> Vec<Formula> {
             reference: |x| stretch::stretched(v2(x), v2(&x[2..])).to_array().to_vec(),
             cases: cases(),
             tolerance: ARITHMETIC,
-            mutants: &[("max(1.0 - dot(stretch, stretch), 1.0e-4)", "1.0"), ("place + stretch *", "place - stretch *")],
+            mutants: &[
+                ("max(1.0 - dot(stretch, stretch), 1.0e-4)", "1.0"),
+                ("position + stretch *", "position - stretch *"),
+            ],
         },
         Formula {
             name: "unstretched",
@@ -101,7 +104,7 @@ fn places() -> Vec<Formula> {
             },
             cases: cases(),
             tolerance: ARITHMETIC * 4.0,
-            mutants: &[("place - stretch * dot(stretch, place)", "place + stretch * dot(stretch, place)")],
+            mutants: &[("position - stretch * dot(stretch, position)", "position + stretch * dot(stretch, position)")],
         },
         Formula {
             name: "stretched_normal",

@@ -149,7 +149,7 @@ fn volumes() -> Vec<Formula> {
             reference: |x| vec![technique::volumetric_falloff(v3(x))],
             cases: random(100, &[(-1.0, 1.0); 3]),
             tolerance: ARITHMETIC,
-            mutants: &[("dot(place, place)", "length(place)"), ("saturate(1.0", "(1.0")],
+            mutants: &[("dot(position, position)", "length(position)"), ("saturate(1.0", "(1.0")],
         },
         Formula {
             name: "volumetric_density",
@@ -177,7 +177,7 @@ fn volumes() -> Vec<Formula> {
             reference: |x| technique::volumetric_normal(v3(x), v3(&x[3..])).to_array().to_vec(),
             cases: random(100, &[(-1.0, 1.0); 6]),
             tolerance: TRANSCENDENTAL,
-            mutants: &[("place + 2.0 * gradient", "place - 2.0 * gradient"), ("max(normal.z, 0.1)", "normal.z")],
+            mutants: &[("position + 2.0 * gradient", "position - 2.0 * gradient"), ("max(normal.z, 0.1)", "normal.z")],
         },
     ]
 }

@@ -12,7 +12,7 @@ use super::Formula;
 use super::fixture::{DEFAULTS, DEPTHS, visible_system};
 use super::inputs::{ARITHMETIC, HALF, halves, random, test_ramp, v2, v4, with_choices, word};
 
-/// A sprite at a place in the target, rotated.
+/// A sprite at a position in the target, rotated.
 fn uv_from_texels(x: &[f32]) -> Vec4 {
     v4(x) * 0.1
 }
@@ -137,7 +137,7 @@ fn squares() -> Vec<Formula> {
             },
             cases: random(200, &[SIDE, SIDE, SIDE, SIDE, TEXEL, TEXEL, TEXEL, TEXEL, (0.0, 1.0)]),
             tolerance: ARITHMETIC,
-            mutants: &[("thickness * thickness", "thickness"), ("max(1.0 - dot(place, place), 0.0)", "1.0")],
+            mutants: &[("thickness * thickness", "thickness"), ("max(1.0 - dot(position, position), 0.0)", "1.0")],
         },
     ]
 }
@@ -203,13 +203,13 @@ fn sprites() -> Vec<Formula> {
                    y(0, tested_view_depth(test_ramp, vec2u(u32(x(1)), u32(x(2)))));",
             reference: |x| {
                 let visible = visible_system(&DEFAULTS);
-                let place = UVec2::new(x[1] as u32, x[2] as u32);
+                let position = UVec2::new(x[1] as u32, x[2] as u32);
                 vec![match x[0] > 0.5 {
                     true => {
-                        let texel = test_ramp().load(place + UVec2::new(3, 1)).x;
+                        let texel = test_ramp().load(position + UVec2::new(3, 1)).x;
                         depth::view_depth_from_linear(texel + visible.view.depth_offset)
                     }
-                    false => test_ramp().load(place).x * visible.system.depth_limit,
+                    false => test_ramp().load(position).x * visible.system.depth_limit,
                 }]
             },
             cases: with_choices(2, &[(0.0, 4.99), (0.0, 2.99)]),

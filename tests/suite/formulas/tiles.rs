@@ -178,11 +178,11 @@ fn lists() -> Vec<Formula> {
                 let (list, entries) = tiles::bin_list(&tiles, 77, word(x), word(&x[2..]), word(&x[4..]));
                 [halves(list.x), halves(list.y), halves(entries)].concat()
             },
-            // Lists of up to twice their share of a 32-bit count, 0x1111_1111.
+            // Lists of up to twice their part of a 32-bit count, 0x1111_1111.
             cases: random(300, &[(0.0, 20000.0), HALF, (0.0, 4400.0), HALF, (0.0, 4400.0), HALF, (0.0, 20000.0), HALF]),
             tolerance: 0.0,
             mutants: &[
-                ("length <= share && more <= share - length", "true"),
+                ("length <= fraction && more <= fraction - length", "true"),
                 ("is_counted && list_fits", "list_fits"),
                 ("list_fits(first, size, tiles.capacity)", "true"),
                 ("vec2u(first, length), fits", "vec2u(first, size), fits"),

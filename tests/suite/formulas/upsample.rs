@@ -16,7 +16,7 @@ fn fit(x: &[f32]) -> upsample::GuidedFit {
 
 const WGSL_FIT: &str = "var f: GuidedFit; f.nearest = 1.0e6; f.farthest = -1.0e6; for (var i = 0u; i < 4u; i++) { let o = 5u * i; \
      f = add_texel(f, vec3f(x(o), x(o + 1u), x(o + 2u)), f32(i + 1u), vec4f(x(o + 3u))); } \
-     y(0, f.total); y(1, f.nearest); y(2, f.farthest); for (var i = 0u; i < 3u; i++) { y(3u + i, f.place[i]); \
+     y(0, f.total); y(1, f.nearest); y(2, f.farthest); for (var i = 0u; i < 3u; i++) { y(3u + i, f.position[i]); \
      y(6u + i, f.squares[i]); y(9u + i, f.products[i]); } y(12, f.value.x); y(13, f.x_value.x); y(14, f.y_value.x); \
      y(15, f.z_value.x); y(16, f.low.x); y(17, f.high.x);";
 
@@ -100,7 +100,7 @@ fn weights() -> Vec<Formula> {
             cases: random(100, &[(-2.2, 2.2), (-2.2, 2.2), (-0.5, 0.5), (3.0, 6.0)]),
             tolerance: TRANSCENDENTAL,
             mutants: &[
-                ("abs(place.xy) * 0.5", "abs(place.xy)"),
+                ("abs(position.xy) * 0.5", "abs(position.xy)"),
                 ("(2.0 / (SURFACE_DEPTH_TOLERANCE", "(1.0 / (SURFACE_DEPTH_TOLERANCE"),
             ],
         },
@@ -115,18 +115,18 @@ fn guided_fits() -> Vec<Formula> {
             wgsl: WGSL_FIT,
             reference: |x| {
                 let fit = fit(x);
-                let vectors = [fit.place, fit.squares, fit.products].map(|v| v.to_array());
+                let vectors = [fit.position, fit.squares, fit.products].map(|v| v.to_array());
                 let values = [fit.value, fit.x_value, fit.y_value, fit.z_value, fit.low, fit.high].map(|v| v.x);
                 [[fit.total, fit.nearest, fit.farthest].as_slice(), vectors.as_flattened(), &values].concat()
             },
             cases: random(100, &[(-2.0, 2.0); 20]),
             tolerance: ARITHMETIC * 10.0,
             mutants: &[
-                ("w.xxy * place.yzz", "w.xyy * place.yzz"),
-                ("w * place,", "w,"),
+                ("w.xxy * position.yzz", "w.xyy * position.yzz"),
+                ("w * position,", "w,"),
                 ("fit.y_value + value * w.y", "fit.y_value + value * w.x"),
                 ("value, fit.total == 0.0),\n        min", "value, false),\n        min"),
-                ("min(fit.nearest, place.z)", "place.z"),
+                ("min(fit.nearest, position.z)", "position.z"),
             ],
         },
         Formula {
@@ -221,11 +221,12 @@ fn carried() -> Vec<Formula> {
                 upsample::carried_value(v4(&x[8..]), values, slopes, v4(&x[12..]), x[16], x[17]).to_array().into()
             },
             cases: {
-                let share = [(0.01, 0.25); 4];
+                let fraction = [(0.01, 0.25); 4];
                 let depths = [(4.0, 5.0); 4];
                 random(
                     200,
-                    &[&[(0.0, 1.0); 4], &[(-0.05, 0.05); 4], &share, &depths, &[(3.5, 5.5), (0.5, 2.0)][..]].concat(),
+                    &[&[(0.0, 1.0); 4], &[(-0.05, 0.05); 4], &fraction, &depths, &[(3.5, 5.5), (0.5, 2.0)][..]]
+                        .concat(),
                 )
             },
             tolerance: ARITHMETIC * 100.0,
@@ -241,10 +242,10 @@ fn carried() -> Vec<Formula> {
             ],
         },
         Formula {
-            name: "four_texels_share",
+            name: "four_texels_weight",
             file: "lib/upsample.wgsl",
-            wgsl: "y(0, four_texels_share(x(0)));",
-            reference: |x| vec![upsample::four_texels_share(x[0])],
+            wgsl: "y(0, four_texels_weight(x(0)));",
+            reference: |x| vec![upsample::four_texels_weight(x[0])],
             cases: random(100, &[(0.0, 0.3)]),
             tolerance: ARITHMETIC * 10.0,
             mutants: &[("smoothstep(0.02, 0.2, seen)", "smoothstep(0.0, 0.2, seen)")],

@@ -66,7 +66,7 @@ fn unsorted_host_buffer_draws_the_same_image_as_a_sorted_one() {
                     ..ParticleBuffer::new(&buffer, count as u32)
                 });
                 host.draw_particles(gpu(), &scene, particles).unwrap();
-                host.picture(gpu()).unwrap()
+                host.image(gpu()).unwrap()
             };
             let sorted = drawn(&particles, false);
             let unsorted = drawn(&particles, true);
@@ -97,7 +97,7 @@ fn a_gpu_sorts_many_particles_of_the_cpu() {
             host.draw_particles(gpu(), &scene, Particles::Slice(particles)).unwrap();
             let sort_buffers = host.renderer.memory_use().tiled.sorted;
             assert_eq!(sort_buffers > 0, cooperative && particles.len() > 32_767, "{path:?}: {sort_buffers} bytes");
-            host.picture(gpu()).unwrap()
+            host.image(gpu()).unwrap()
         };
         for count in [9000, particles.len()] {
             // With cooperative traversal, light per pixel is computed in half floats.
@@ -140,7 +140,7 @@ fn only_living_particles_are_drawn_measured_and_sorted() {
             let alive = number.as_ref().map(|buffer| AliveCount { buffer, offset: 4 });
             let particles = ParticleBuffer { alive, is_sorted, ..ParticleBuffer::new(&buffer, count) };
             host.draw_particles(gpu(), &scene, Particles::Buffer(particles)).unwrap();
-            host.picture(gpu()).unwrap()
+            host.image(gpu()).unwrap()
         };
         let known = drawn(living, None);
         let counted = drawn(room, Some(living));
@@ -240,7 +240,7 @@ fn host_buffer_looks_like_the_same_particles_in_a_slice() {
         change(&mut scene);
         // The camera looks along z. In this order, the sorted and the unsorted way draw alike, and only light can differ.
         scene.particles.sort_by(|a, b| a.position.z.total_cmp(&b.position.z));
-        let slice = scene.on_gpu(gpu()).picture;
+        let slice = scene.on_gpu(gpu()).image;
         let tight = particle_bounds(&scene.particles, SpriteExtent::from_settings(&scene.settings));
         // A generous box, as a host without knowledge of its particles gives.
         let center = tight.center();
@@ -252,7 +252,7 @@ fn host_buffer_looks_like_the_same_particles_in_a_slice() {
         let particles = Particles::Buffer(ParticleBuffer::new(&buffer, count));
         host.draw_particles(gpu(), &scene, particles).unwrap();
         gpu().check().unwrap();
-        let measured = psnr(&host.picture(gpu()).unwrap(), &slice);
+        let measured = psnr(&host.image(gpu()).unwrap(), &slice);
         println!("{name}: {measured:.1} dB");
         assert!(measured >= 70.0, "{name}: {measured:.1} dB");
         // A buffer that only the vertex stage may read is lit by its box.
@@ -261,7 +261,7 @@ fn host_buffer_looks_like_the_same_particles_in_a_slice() {
             let particles =
                 Particles::Buffer(ParticleBuffer { is_sorted: true, ..ParticleBuffer::new(&vertices, count) });
             host.draw_particles(gpu(), &scene, particles).unwrap();
-            let unmeasured = psnr(&host.picture(gpu()).unwrap(), &slice);
+            let unmeasured = psnr(&host.image(gpu()).unwrap(), &slice);
             assert!(unmeasured < 60.0, "{unmeasured:.1} dB: the box alone gives the same image");
         }
     }

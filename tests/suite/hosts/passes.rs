@@ -28,13 +28,13 @@ fn one_prepare_serves_every_debug_view() {
             let mut encoder = self::encoder(gpu());
             host.render(&mut encoder, &all);
             gpu().submit(encoder).unwrap();
-            assert!(host.picture(gpu()).unwrap() == separate.on_gpu(gpu()).picture, "{path:?} {scene:?}");
+            assert!(host.image(gpu()).unwrap() == separate.on_gpu(gpu()).image, "{path:?} {scene:?}");
         }
     }
     // A debug view that `prepare` was not told about draws nothing.
     let scene =
         TestScene { debug_views: Some(&[DebugView::Final]), debug_view: DebugView::Overdraw, ..TestScene::new(SIZE) };
-    assert!(scene.on_gpu(gpu()).picture.texels.iter().all(|texel| *texel == BACKDROP));
+    assert!(scene.on_gpu(gpu()).image.texels.iter().all(|texel| *texel == BACKDROP));
 }
 
 #[test]
@@ -82,7 +82,7 @@ fn every_target_format_and_sample_count_shows_the_same_smoke() {
             };
             host.draw(device_with_optional_features(), &scene).unwrap();
             device_with_optional_features().check().unwrap_or_else(|error| panic!("{name}: {error}"));
-            let mut picture = host.picture(device_with_optional_features()).unwrap();
+            let mut image = host.image(device_with_optional_features()).unwrap();
             let mut reference = scene.on_cpu();
             if kind.color_format != Format::Rgba16Float && kind.color_format != Format::Rg11b10Ufloat {
                 reference.texels.iter_mut().for_each(|texel| *texel = texel.min(Vec4::ONE));
@@ -92,9 +92,9 @@ fn every_target_format_and_sample_count_shows_the_same_smoke() {
             }
             // Two bits of alpha.
             if kind.color_format == Format::Rgb10a2Unorm {
-                picture.texels.iter_mut().chain(&mut reference.texels).for_each(|texel| texel.w = 1.0);
+                image.texels.iter_mut().chain(&mut reference.texels).for_each(|texel| texel.w = 1.0);
             }
-            let psnr = psnr(&picture, &reference);
+            let psnr = psnr(&image, &reference);
             println!("{name}, {}, depth {attach_depth}: {psnr:.1} dB", path.name());
             assert!(psnr >= least, "{name}, {}: {psnr:.1} dB", path.name());
             for (index, format) in kind.additional_attachments.iter().enumerate() {
@@ -112,9 +112,9 @@ fn every_target_format_and_sample_count_shows_the_same_smoke() {
 #[test]
 fn multisampled_targets_show_the_same_smoke_with_any_depth_attachment() {
     let mut scene = TestScene::new(SIZE);
-    let single = scene.on_gpu(gpu()).picture;
+    let single = scene.on_gpu(gpu()).image;
     scene.host.samples = 4;
-    let multisampled = scene.on_gpu(gpu()).picture;
+    let multisampled = scene.on_gpu(gpu()).image;
     let same = psnr(&multisampled, &single);
     // The blended samples of a pixel are averaged, and rounded once more.
     assert!(same >= 80.0, "{same:.1} dB from one sample");
@@ -122,7 +122,7 @@ fn multisampled_targets_show_the_same_smoke_with_any_depth_attachment() {
     with_stencil.host.depth_format = wgpu::TextureFormat::Depth24PlusStencil8;
     scene.attach_depth = false;
     for (name, scene) in [("not attached", scene), ("Depth24PlusStencil8", with_stencil)] {
-        let same = psnr(&scene.on_gpu(gpu()).picture, &multisampled);
+        let same = psnr(&scene.on_gpu(gpu()).image, &multisampled);
         println!("{name}: {same:.1} dB");
         assert!(same >= 97.0, "{name}: {same:.1} dB");
     }
@@ -162,7 +162,7 @@ fn multisampled_depth_is_resolved_to_the_farthest_sample() {
             let mut host = Host::new(gpu(), &scene).unwrap();
             host.draw(gpu(), &scene).unwrap();
             gpu().check().unwrap();
-            let psnr = psnr(&host.picture(gpu()).unwrap(), &scene.on_cpu());
+            let psnr = psnr(&host.image(gpu()).unwrap(), &scene.on_cpu());
             println!("{path:?} {depth_format:?} attached {attach_depth}: {psnr:.1} dB");
             assert!(psnr >= MIN_PSNR, "{path:?} {depth_format:?} attached {attach_depth}: {psnr:.1} dB");
         }
@@ -181,10 +181,10 @@ fn every_sample_in_front_of_the_smoke_of_a_multisampled_pass_stays_clear() {
         scene.settings.path = path;
         // It is not tested by the hardware: it lies over whole pixels.
         scene.settings.specular_scatter.intensity = 0.0;
-        let whole = scene.on_gpu(gpu()).picture;
+        let whole = scene.on_gpu(gpu()).image;
         // One sample of every pixel is an object's.
         scene.host.has_near_sample = true;
-        let outlines = scene.on_gpu(gpu()).picture;
+        let outlines = scene.on_gpu(gpu()).image;
         let expected = whole.texels.iter().map(|smoke| smoke.lerp(BACKDROP, 0.25));
         let errors = outlines.texels.iter().zip(expected).map(|(found, expected)| (found - expected).abs());
         let most = errors.map(|error| error.max_element()).fold(0.0, f32::max);
@@ -198,7 +198,7 @@ fn depth_of_a_mip_level_is_measured_by_the_target_size() {
     let mut scene = TestScene::new(SIZE);
     scene.attach_depth = false;
     let mut host = Host::new(gpu(), &scene).unwrap();
-    let expected = scene.on_gpu(gpu()).picture;
+    let expected = scene.on_gpu(gpu()).image;
     let texture = gpu().device.create_texture(&wgpu::TextureDescriptor {
         label: None,
         size: wgpu::Extent3d { width: 2 * SIZE.x, height: 2 * SIZE.y, depth_or_array_layers: 1 },
@@ -223,7 +223,7 @@ fn depth_of_a_mip_level_is_measured_by_the_target_size() {
     scene.depth = DepthKind::Linear;
     scene.host.target_size = Some(SIZE);
     host.draw(gpu(), &scene).unwrap();
-    let psnr = psnr(&host.picture(gpu()).unwrap(), &expected);
+    let psnr = psnr(&host.image(gpu()).unwrap(), &expected);
     assert!(psnr >= MIN_PSNR, "{psnr:.1} dB");
     scene.host.target_size = Some(SIZE + 1);
     assert_eq!(rejected_field(host.draw(gpu(), &scene)), "target_size");
@@ -242,12 +242,12 @@ fn srgb_view_of_a_gamma_target_blends_smoke_and_glow_in_linear_light() {
         let expected = scene.on_cpu();
         scene.host.color_format = wgpu::TextureFormat::Rgba8UnormSrgb;
         scene.host.stored_format = Some(wgpu::TextureFormat::Rgba8Unorm);
-        let mut picture = scene.on_gpu(gpu()).picture;
+        let mut image = scene.on_gpu(gpu()).image;
         // The texture is read back as what it stores: code.
-        picture.for_each(|_, texel| {
+        image.for_each(|_, texel| {
             *texel = texel.truncate().map(haze_core::formula::color::linear_from_srgb).extend(texel.w);
         });
-        let psnr = psnr(&picture, &expected);
+        let psnr = psnr(&image, &expected);
         assert!(psnr >= 55.0, "{}: {psnr:.1} dB", path.name());
     }
 }
@@ -356,7 +356,7 @@ fn unreadable_scene_depth_is_rejected() {
         let mut encoder = encoder(gpu());
         host.render(&mut encoder, &scene);
         gpu().submit(encoder).unwrap();
-        assert!(host.picture(gpu()).unwrap().texels.iter().all(|&texel| texel == BACKDROP), "{name}");
+        assert!(host.image(gpu()).unwrap().texels.iter().all(|&texel| texel == BACKDROP), "{name}");
         host.depth = own;
     }
     // A view of one layer of an array texture is accepted.

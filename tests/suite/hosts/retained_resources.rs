@@ -31,7 +31,7 @@ fn offset_of_particles_in_a_host_buffer_does_not_change_the_image() {
             is_sorted: true,
             ..ParticleBuffer::new(&buffer, scene.particles.len() as u32)
         });
-        host.draw_particles(gpu(), &scene, particles).map(|()| host.picture(gpu()).unwrap())
+        host.draw_particles(gpu(), &scene, particles).map(|()| host.image(gpu()).unwrap())
     };
     let first = draw(0).unwrap();
     assert!(first.texels.iter().any(|&texel| texel != BACKDROP));

@@ -15,7 +15,7 @@ fn two_views_in_one_submission_match_two_separate_frames() {
     let mut right = TestScene::new(SIZE);
     right.view.view_from_world = Mat4::from_translation(vec3(-0.6, 0.2, 0.5));
     right.lights[0].intensity = 5.0;
-    let expected = [left.on_gpu(gpu()).picture, right.on_gpu(gpu()).picture];
+    let expected = [left.on_gpu(gpu()).image, right.on_gpu(gpu()).image];
     assert!(psnr(&expected[0], &expected[1]) < 30.0, "the two views are too similar for this test");
 
     let mut one = Host::new(gpu(), &left).unwrap();
@@ -30,7 +30,7 @@ fn two_views_in_one_submission_match_two_separate_frames() {
         one.render(&mut encoder, &left);
         other.render(&mut encoder, &right);
         gpu().submit(encoder).unwrap();
-        assert!(one.picture(gpu()).unwrap() == expected[0] && other.picture(gpu()).unwrap() == expected[1]);
+        assert!(one.image(gpu()).unwrap() == expected[0] && other.image(gpu()).unwrap() == expected[1]);
     }
     // Another view on the same context compiles no further pipelines.
     let mut third = Host::with_context(gpu(), &left, Some(&context)).unwrap();
@@ -42,7 +42,7 @@ fn two_views_in_one_submission_match_two_separate_frames() {
 #[test]
 fn second_prepare_before_the_first_is_submitted_is_rejected() {
     let scene = TestScene::new(SIZE);
-    let picture = scene.on_gpu(gpu()).picture;
+    let image = scene.on_gpu(gpu()).image;
     let mut host = Host::new(gpu(), &scene).unwrap();
     let refused = |host: &mut Host| {
         let mut encoder = encoder(gpu());
@@ -68,7 +68,7 @@ fn second_prepare_before_the_first_is_submitted_is_rejected() {
     host.prepare(&mut third, &scene, slice(&scene)).unwrap();
     host.render(&mut third, &scene);
     gpu().submit(third).unwrap();
-    assert!(host.picture(gpu()).unwrap() == picture);
+    assert!(host.image(gpu()).unwrap() == image);
     gpu().check().unwrap();
 }
 
@@ -101,7 +101,7 @@ fn systems_can_be_drawn_one_by_one_between_objects_of_the_host() {
             }
         });
         gpu().submit(encoder).unwrap();
-        host.picture(gpu()).unwrap()
+        host.image(gpu()).unwrap()
     };
     assert!(draw(true) == draw(false));
 }

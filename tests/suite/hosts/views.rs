@@ -54,16 +54,16 @@ fn handedness_and_up_axis_do_not_change_the_image() {
                 }
                 scene
             };
-            let picture = scene().on_gpu(gpu()).picture;
+            let image = scene().on_gpu(gpu()).image;
             for (name, change) in hosts {
                 let name = format!("{name}, {} {} {near_box}", technique.name(), path.name());
                 let scene = change(scene());
-                let seen = scene.on_gpu(gpu()).picture;
+                let seen = scene.on_gpu(gpu()).image;
                 let reference = psnr(&seen, &scene.on_cpu());
                 assert!(reference >= MIN_PSNR, "{name}: {reference:.1} dB from the reference");
                 // Volume noise is fixed in world space, so a transformed world has other noise.
                 let same_noise = !technique.is_volumetric() || name.starts_with("+z");
-                let same = psnr(&seen, &picture);
+                let same = psnr(&seen, &image);
                 // Another order of f32 operations, rounded to f16.
                 assert!(!same_noise || same >= 85.0, "{name}: {same:.1} dB");
             }
@@ -82,8 +82,8 @@ fn smoke_50_km_from_the_origin_looks_the_same() {
         scene.settings.path = path;
         let far = transform_world(scene, Mat4::from_translation(offset) * Mat4::from_rotation_y(0.7));
         // Positions there are multiples of 4 mm, and so they are back at the origin.
-        let near = transform_world(far.clone(), Mat4::from_translation(-offset)).on_gpu(gpu()).picture;
-        let psnr = psnr(&far.on_gpu(gpu()).picture, &near);
+        let near = transform_world(far.clone(), Mat4::from_translation(-offset)).on_gpu(gpu()).image;
+        let psnr = psnr(&far.on_gpu(gpu()).image, &near);
         println!("{}: {psnr:.1} dB", path.name());
         // Rotating such positions rounds to 4 mm again, in an order of operations that differs on OpenGL: 53.7 dB.
         let least = if is_tiled_available() { 57.0 } else { 52.0 };
@@ -118,9 +118,9 @@ fn mirrored_projections_and_near_planes_behind_the_viewer_match_the_reference() 
                 // Disables the near fade, which depends on the distance from the viewer.
                 scene.settings.soft_fade.near_fade_end = 0.0;
                 scene.view_direction_z = if name.ends_with("+z") { 1.0 } else { -1.0 };
-                let picture = scene.on_gpu(gpu()).picture;
-                assert!(picture.texels.iter().any(|&texel| texel != BACKDROP), "{name}: no smoke");
-                let psnr = psnr(&picture, &scene.on_cpu());
+                let image = scene.on_gpu(gpu()).image;
+                assert!(image.texels.iter().any(|&texel| texel != BACKDROP), "{name}: no smoke");
+                let psnr = psnr(&image, &scene.on_cpu());
                 assert!(psnr >= MIN_PSNR, "{name}, {}, {}: {psnr:.1} dB", technique.name(), path.name());
             }
         }
@@ -135,7 +135,7 @@ fn mirrored_projections_and_near_planes_behind_the_viewer_match_the_reference() 
         scene.depth = DepthKind::Linear;
         scene.empty_linear = true;
         scene.attach_depth = false;
-        scene.on_gpu(gpu()).picture
+        scene.on_gpu(gpu()).image
     };
     let psnr = psnr(&seen_from(0.5, 0.0), &seen_from(-19.5, 20.0));
     assert!(psnr >= 85.0, "{psnr:.1} dB");
@@ -179,10 +179,10 @@ fn view_of_a_part_of_a_larger_target_draws_only_that_part() {
         if scene.settings.path == RenderPath::Tiled && !is_tiled_available() {
             continue;
         }
-        let separate = scene.on_gpu(gpu()).picture;
+        let separate = scene.on_gpu(gpu()).image;
         scene.host.target_size = Some(UVec2::new(260, 150));
         scene.view.origin = origin;
-        let part = scene.on_gpu(gpu()).picture;
+        let part = scene.on_gpu(gpu()).image;
         let mut cropped = Image::new(SIZE, Vec4::ZERO);
         cropped.for_each(|at, texel| *texel = part.load((at + origin).as_ivec2()));
         // At another position in the target, sprite corners are snapped to other 1/256 pixels.
@@ -226,12 +226,12 @@ fn particles_in_a_space_of_their_own_look_like_transformed_ones() {
         scene.settings.technique = technique;
         scene.settings.path = path;
         scene.settings.accumulate.order = order;
-        let expected = scene.on_gpu(gpu()).picture;
+        let expected = scene.on_gpu(gpu()).image;
         let mut own_space = scene.clone();
         own_space.world_from_particles = world_from_particles;
         own_space.particles = scene.particles.iter().map(local).collect();
         let name = format!("{} {} {order:?}", technique.name(), path.name());
-        let psnr = psnr(&own_space.on_gpu(gpu()).picture, &expected);
+        let psnr = psnr(&own_space.on_gpu(gpu()).image, &expected);
         println!("{name}: {psnr:.1} dB");
         assert!(psnr >= 70.0, "{name}: {psnr:.1} dB");
         assert!(self::psnr(&own_space.on_cpu(), &scene.on_cpu()) >= 70.0, "{name} on the CPU");

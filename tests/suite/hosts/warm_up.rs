@@ -89,11 +89,11 @@ fn pipelines_are_stored_in_and_loaded_from_the_hosts_pipeline_cache() {
         let mut host = Host::with_context(gpu, &scene, Some(&context)).unwrap();
         host.draw(gpu, &scene).unwrap();
         gpu.check().unwrap();
-        (empty, cache.get_data().unwrap(), host.picture(gpu).unwrap())
+        (empty, cache.get_data().unwrap(), host.image(gpu).unwrap())
     };
-    let (empty, filled, picture) = draw(None);
+    let (empty, filled, image) = draw(None);
     let (loaded, _, again) = draw(Some(&filled));
-    assert!(loaded == filled.len() && again == picture, "{loaded} bytes of {}", filled.len());
+    assert!(loaded == filled.len() && again == image, "{loaded} bytes of {}", filled.len());
     // Mesa's software driver stores only a header.
     let keeps = !gpu.adapter.get_info().name.contains("llvmpipe");
     assert!(!keeps || filled.len() > empty, "{} bytes after {empty}", filled.len());

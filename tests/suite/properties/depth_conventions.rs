@@ -37,12 +37,12 @@ fn every_depth_convention_gives_the_same_image() {
                 let mut scene = TestScene::new(SIZE);
                 scene.view.clip_from_view = clip_from_view;
                 scene.depth = depth;
-                let picture = scene.on_gpu(gpu()).picture;
-                let reference = psnr(&picture, &scene.on_cpu());
+                let image = scene.on_gpu(gpu()).image;
+                let reference = psnr(&image, &scene.on_cpu());
                 assert!(reference >= MIN_PSNR, "{clip_from_view}: {reference:.1} dB from the reference");
-                let standard = standard.get_or_insert_with(|| picture.clone());
+                let standard = standard.get_or_insert_with(|| image.clone());
                 // Depth buffers of different conventions round differently; 90 dB were measured.
-                let psnr = psnr(&picture, standard);
+                let psnr = psnr(&image, standard);
                 assert!(psnr >= 85.0, "{clip_from_view}, {depth:?}: {psnr:.1} dB from standard");
             }
         }
@@ -52,15 +52,15 @@ fn every_depth_convention_gives_the_same_image() {
 #[test]
 fn pass_without_a_depth_attachment_gives_the_same_image() {
     let mut scene = TestScene::new(SIZE);
-    let tested = scene.on_gpu(gpu()).picture;
+    let tested = scene.on_gpu(gpu()).image;
     scene.attach_depth = false;
     for path in [RenderPath::Raster, RenderPath::Forward] {
         scene.settings.path = path;
-        let picture = scene.on_gpu(gpu()).picture;
-        let reference = psnr(&picture, &scene.on_cpu());
+        let image = scene.on_gpu(gpu()).image;
+        let reference = psnr(&image, &scene.on_cpu());
         assert!(reference >= MIN_PSNR, "{path:?}: {reference:.1} dB");
         // Without a depth attachment the box is not depth-tested; only the soft fade hides smoke behind the scene.
-        assert!(path == RenderPath::Forward || psnr(&picture, &tested) >= 85.0);
+        assert!(path == RenderPath::Forward || psnr(&image, &tested) >= 85.0);
     }
 }
 
@@ -72,11 +72,11 @@ fn webgl2_limits_are_enough_for_the_raster_and_forward_paths() {
     let mut scene = TestScene::new(SIZE);
     for mode in DiffuseMode::ALL {
         scene.settings.diffuse.mode = *mode;
-        let psnr = psnr(&scene.on_gpu(&webgl2).picture, &scene.on_cpu());
+        let psnr = psnr(&scene.on_gpu(&webgl2).image, &scene.on_cpu());
         assert!(psnr >= MIN_PSNR, "{mode:?}: {psnr:.1} dB");
     }
     scene.settings.path = RenderPath::Forward;
-    assert!(psnr(&scene.on_gpu(&webgl2).picture, &scene.on_cpu()) >= MIN_PSNR);
+    assert!(psnr(&scene.on_gpu(&webgl2).image, &scene.on_cpu()) >= MIN_PSNR);
     webgl2.check().unwrap();
 }
 
@@ -90,15 +90,15 @@ fn near_plane_cuts_no_hole_when_the_camera_enters_the_bounds() {
         scene.bounds = Some(Bounds { min: vec3(-5.0, -4.0, -8.0), max: vec3(5.0, 4.0, -4.0) });
         scene.debug_view = DebugView::ReducedDepth;
         scene.view.clip_from_view = directx::perspective(0.8, 16.0 / 9.0, 0.5, 80.0);
-        let picture = scene.on_gpu(gpu()).picture;
+        let image = scene.on_gpu(gpu()).image;
         // From here on the box fills the view, and this debug view draws every pixel of the box.
         if forward >= 3.5 {
-            assert!(picture.texels.iter().all(|&texel| texel != BACKDROP), "{forward}: a hole");
+            assert!(image.texels.iter().all(|&texel| texel != BACKDROP), "{forward}: a hole");
         }
         scene.debug_view = DebugView::Final;
         // Only until the camera has passed the smoke.
         if forward < 6.3 {
-            let psnr = psnr(&scene.on_gpu(gpu()).picture, &scene.on_cpu());
+            let psnr = psnr(&scene.on_gpu(gpu()).image, &scene.on_cpu());
             assert!(psnr >= MIN_PSNR, "{forward}: {psnr:.1} dB");
         }
     }
@@ -109,5 +109,5 @@ fn bounds_beyond_the_far_plane_cut_no_hole() {
     let mut scene = TestScene::new(SIZE);
     scene.view.clip_from_view = directx::perspective(0.8, 16.0 / 9.0, 0.5, 20.0);
     scene.bounds = Some(Bounds { min: Vec3::splat(-50.0), max: Vec3::splat(50.0) });
-    assert!(psnr(&scene.on_gpu(gpu()).picture, &scene.on_cpu()) >= MIN_PSNR);
+    assert!(psnr(&scene.on_gpu(gpu()).image, &scene.on_cpu()) >= MIN_PSNR);
 }

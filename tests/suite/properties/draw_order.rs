@@ -47,7 +47,7 @@ fn amount_on_the_gpu_does_not_depend_on_draw_order() {
     // Particles in a buffer are drawn in the host's order.
     let mut draw = |particles: &[Particle]| {
         host.draw_buffer(gpu(), &scene, particles).unwrap();
-        host.picture(gpu()).unwrap()
+        host.image(gpu()).unwrap()
     };
     let forwards = draw(&scene.particles);
     let reversed: Vec<_> = scene.particles.iter().rev().copied().collect();
@@ -68,7 +68,7 @@ fn weighted_order_draws_the_same_image_from_reversed_particles() {
         let mut host = Host::new(gpu(), &scene).unwrap();
         let mut draw = |particles: &[Particle]| {
             host.draw_buffer(gpu(), &scene, particles).unwrap();
-            host.picture(gpu()).unwrap()
+            host.image(gpu()).unwrap()
         };
         psnr(&draw(&scene.particles), &draw(&reversed))
     };
@@ -87,9 +87,9 @@ fn particle_amounts_above_1_are_drawn_as_1() {
         scene.particles = vec![Particle { position: vec3(0.0, 0.0, -5.0), amount, ..Particle::default() }];
         scene.bounds = Some(particle_bounds(&scene.particles, SpriteExtent::from_settings(&scene.settings)));
         host.draw(gpu(), &scene).unwrap();
-        let slice = host.picture(gpu()).unwrap();
+        let slice = host.image(gpu()).unwrap();
         host.draw_buffer(gpu(), &scene, &scene.particles).unwrap();
-        [slice, host.picture(gpu()).unwrap(), scene.on_cpu()]
+        [slice, host.image(gpu()).unwrap(), scene.on_cpu()]
     };
     let whole = draw(1.0);
     assert!(whole[0].texels.iter().any(|texel| *texel != BACKDROP));
@@ -110,7 +110,7 @@ fn rgba8_target_loses_thin_smoke_and_rgba16float_does_not() {
         scene.settings.accumulate.format = format;
         scene.settings.accumulate.encoding = encoding;
         scene.debug_view = DebugView::Amount;
-        scene.on_gpu(gpu()).picture.load(glam::IVec2::new(8, 16)).x
+        scene.on_gpu(gpu()).image.load(glam::IVec2::new(8, 16)).x
     };
     use haze_core::settings::NormalEncoding;
     assert!(stack(AccumulationFormat::Rgba16Float, NormalEncoding::Signed) > 0.97);

@@ -28,7 +28,7 @@ fn no_builtin_preset_writes_nan_or_infinity_to_a_target() {
 }
 
 fn assert_all_finite(scene: &TestScene, drawn: &crate::test_host::RenderedFrame, name: &str) {
-    assert!(drawn.picture.texels.iter().all(|texel| texel.is_finite()), "{name}");
+    assert!(drawn.image.texels.iter().all(|texel| texel.is_finite()), "{name}");
     let targets = drawn.renderer.targets(0).unwrap();
     assert!(targets.size.cmple(scene.view.size).all());
     for view in targets.accumulation.iter().chain(targets.reduced_depth) {
@@ -55,7 +55,7 @@ fn particles_with_non_finite_or_huge_values_in_a_host_buffer_are_not_drawn() {
     }
     particles.push(Particle { amount: f32::NAN, ..good });
     host.draw_buffer(gpu(), &scene, &particles).unwrap();
-    assert!(host.picture(gpu()).unwrap().texels.iter().all(|&texel| texel == BACKDROP));
+    assert!(host.image(gpu()).unwrap().texels.iter().all(|&texel| texel == BACKDROP));
     let targets = host.renderer.targets(0).unwrap();
     assert_eq!(non_finite_texels(gpu(), &targets.accumulation[0], targets.size), 0);
 }

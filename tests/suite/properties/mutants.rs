@@ -20,11 +20,11 @@ fn psnr_limit_detects_typical_mistakes_in_a_pass() {
         scene.settings.specular_scatter.size = 480.0;
         scene
     };
-    let picture = scene().on_gpu(gpu()).picture;
+    let image = scene().on_gpu(gpu()).image;
     let agreement = |change: Mistake| {
         let mut mutant = scene();
         change(&mut mutant);
-        psnr(&picture, &mutant.on_cpu())
+        psnr(&image, &mutant.on_cpu())
     };
     assert!(agreement(|_| {}) >= 60.0);
     let mutants: &[(&str, Mistake)] = &[
@@ -78,5 +78,5 @@ fn psnr_limit_detects_normals_blended_front_to_back() {
     front_to_back.sort_by(|a, b| b.position.z.total_cmp(&a.position.z));
     let mut host = Host::new(gpu(), &scene).unwrap();
     host.draw_buffer(gpu(), &scene, &front_to_back).unwrap();
-    assert!(psnr(&host.picture(gpu()).unwrap(), &sorted) < MIN_PSNR - 10.0);
+    assert!(psnr(&host.image(gpu()).unwrap(), &sorted) < MIN_PSNR - 10.0);
 }

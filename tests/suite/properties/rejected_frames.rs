@@ -14,13 +14,13 @@ fn invalid_frames_are_rejected_with_the_name_of_the_field_and_draw_nothing() {
     // Draws a valid frame first, so that leftovers of it show if a rejected frame draws anything.
     let refusal = |host: &mut Host, scene: &TestScene, particles: Particles<'_>| {
         host.draw(gpu(), &TestScene::new(SIZE)).unwrap();
-        assert!(host.picture(gpu()).unwrap().texels.iter().any(|&texel| texel != BACKDROP));
+        assert!(host.image(gpu()).unwrap().texels.iter().any(|&texel| texel != BACKDROP));
         let mut encoder = gpu().device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         let error = host.prepare(&mut encoder, scene, particles).unwrap_err();
         host.render(&mut encoder, scene);
         gpu().submit(encoder).unwrap();
         assert!(
-            host.picture(gpu()).unwrap().texels.iter().all(|&texel| texel == BACKDROP),
+            host.image(gpu()).unwrap().texels.iter().all(|&texel| texel == BACKDROP),
             "{error}: the rejected frame draws something"
         );
         error

@@ -15,7 +15,7 @@ use crate::test_scene::{BACKDROP, TestScene};
 fn no_smoke_leaves_the_scene_untouched() {
     let untouched = |scene: &TestScene| {
         let drawn = scene.on_gpu(gpu());
-        drawn.picture.texels.iter().all(|&texel| texel == BACKDROP)
+        drawn.image.texels.iter().all(|&texel| texel == BACKDROP)
             && scene.on_cpu().texels.iter().all(|&t| t == BACKDROP)
     };
     let mut scene = TestScene::new(SIZE);
@@ -52,11 +52,11 @@ fn odd_sizes_and_every_scale_match_the_reference() {
             scene.settings.accumulate.downscale = scale;
             let drawn = scene.on_gpu(gpu());
             gpu().check().unwrap();
-            assert!(drawn.picture.texels.iter().all(|texel| texel.is_finite()), "{size} scale {scale}");
+            assert!(drawn.image.texels.iter().all(|texel| texel.is_finite()), "{size} scale {scale}");
             // Hardware snaps corners to a grid of 1/256 pixel. That moves a sprite smaller than a pixel by a
             // considerable part of its size, so the two renderers no longer draw the same sprite.
             if size.min_element() > 64 {
-                let psnr = psnr(&drawn.picture, &scene.on_cpu());
+                let psnr = psnr(&drawn.image, &scene.on_cpu());
                 assert!(psnr >= MIN_PSNR, "{size} scale {scale}: {psnr:.1} dB");
             }
         }
@@ -85,7 +85,7 @@ fn size_and_settings_may_change_every_frame() {
         std::mem::swap(&mut resized, &mut host);
         host.draw(gpu(), &scene).unwrap();
         gpu().check().unwrap();
-        let psnr = psnr(&host.picture(gpu()).unwrap(), &scene.on_cpu());
+        let psnr = psnr(&host.image(gpu()).unwrap(), &scene.on_cpu());
         // A whole texel at a sprite's edge may differ, which is 36 pixels at scale 6 in a small image: 53 dB were
         // measured.
         assert!(psnr >= 50.0, "step {step}: {psnr:.1} dB");
@@ -101,7 +101,7 @@ fn max_side_limits_the_size_of_the_target() {
     let targets = drawn.renderer.targets(0).unwrap();
     assert_eq!(targets.scale, 7);
     assert!(targets.size.max_element() <= 100);
-    assert!(psnr(&drawn.picture, &scene.on_cpu()) >= MIN_PSNR);
+    assert!(psnr(&drawn.image, &scene.on_cpu()) >= MIN_PSNR);
 }
 
 #[test]
@@ -129,7 +129,7 @@ fn largest_light_count_matches_the_reference_and_one_more_light_is_rejected() {
         ..Light::default()
     };
     scene.lights = (0..haze_core::frame::MAX_LIGHTS).map(light).collect();
-    assert!(psnr(&scene.on_gpu(gpu()).picture, &scene.on_cpu()) >= MIN_PSNR);
+    assert!(psnr(&scene.on_gpu(gpu()).image, &scene.on_cpu()) >= MIN_PSNR);
     scene.lights.push(light(0));
     let Err(error) = scene.try_on_gpu(gpu()) else { panic!("129 lights were accepted") };
     assert_eq!(error.to_string(), "lights: 129 lights are too many; expected at most 128");

@@ -71,8 +71,8 @@ pub fn flipbook() -> (Sprite, Option<Sprite>, Option<Sprite>) {
     static FLIPBOOK: LazyLock<[Sprite; 3]> = LazyLock::new(|| {
         let recipe = recipe();
         let baked = recipe.bake(|_| Ok::<_, haze::FieldError>(())).unwrap();
-        let decode = |picture| Sprite::from_image("flipbook".as_ref(), picture, recipe.layout()).unwrap();
-        let sprite = decode(&baked.picture);
+        let decode = |image| Sprite::from_image("flipbook".as_ref(), image, recipe.layout()).unwrap();
+        let sprite = decode(&baked.image);
         let six_way = six_way_of(&sprite);
         [sprite, decode(&baked.detail), six_way]
     });
@@ -91,17 +91,17 @@ fn recipe() -> SpriteRecipe {
 /// with motion, and with reversed motion.
 fn errors_between_frames(recipe: &SpriteRecipe) -> [f32; 3] {
     let baked = recipe.bake(|_| Ok::<_, haze::FieldError>(())).unwrap();
-    let decode = |picture: &_, layout| Sprite::from_image("flipbook".as_ref(), picture, layout).unwrap();
-    let sprite = decode(&baked.picture, recipe.layout());
+    let decode = |image: &_, layout| Sprite::from_image("flipbook".as_ref(), image, layout).unwrap();
+    let sprite = decode(&baked.image, recipe.layout());
     let detail = decode(&baked.detail, recipe.layout());
     let size = recipe.size;
     // Premultiplied normal and amount, as they are accumulated.
     let counted = |texel: Vec4| (texel.xyz() * texel.w).extend(texel.w);
     let mut errors = [0.0; 3];
     for frame in [0.5, 3.5, 6.5] {
-        let truth = recipe.bake_frame(frame).picture;
-        let picture = image::RgbaImage::from_fn(size, size, |x, y| truth.texels[(y * size + x) as usize]);
-        let truth = decode(&picture, SpriteLayout::default());
+        let truth = recipe.bake_frame(frame).image;
+        let image = image::RgbaImage::from_fn(size, size, |x, y| truth.texels[(y * size + x) as usize]);
+        let truth = decode(&image, SpriteLayout::default());
         let frames = flipbook_frames(frame, sprite.frame_count() as f32);
         for index in 0..size * size {
             let at = UVec2::new(index % size, index / size);

@@ -23,8 +23,8 @@ fn amount(scene: &TestScene) -> f32 {
 }
 
 fn amount_in(host: &Host) -> f32 {
-    let picture = host.picture(gpu()).unwrap();
-    let middle = picture.load((SIZE / 2).as_ivec2());
+    let image = host.image(gpu()).unwrap();
+    let middle = image.load((SIZE / 2).as_ivec2());
     // The debug view of the amount is gray, and is drawn over the backdrop wherever the amount is above 0.
     if middle == BACKDROP { 0.0 } else { middle.x }
 }
@@ -77,9 +77,9 @@ fn largest_step(technique: Technique) -> f32 {
         // From 0.9 m in front of the sprite's center to 0.75 m behind it. Near plane at 0.1 m, radius 0.7 m.
         let scene = one_sprite(technique, 0.9 - 1.2 * step as f32 / 64.0);
         host.draw(gpu(), &scene).unwrap();
-        let picture = host.picture(gpu()).unwrap();
+        let image = host.image(gpu()).unwrap();
         let amounts: Vec<f32> =
-            picture.texels.iter().map(|texel| if *texel == BACKDROP { 0.0 } else { texel.x }).collect();
+            image.texels.iter().map(|texel| if *texel == BACKDROP { 0.0 } else { texel.x }).collect();
         if let Some(previous) = previous.replace(amounts.clone()) {
             let changes = amounts.iter().zip(&previous).map(|(a, b): (&f32, &f32)| (a - b).abs());
             largest = largest.max(changes.fold(0.0, f32::max));
@@ -172,7 +172,7 @@ fn nothing_is_drawn_beyond_the_far_plane() {
                 scene.view.clip_from_view = directx::perspective(0.8, 16.0 / 9.0, 0.1, 6.0);
                 scene.settings.path = path;
                 scene.debug_view = DebugView::Final;
-                scene.on_gpu(gpu()).picture.texels.iter().any(|&texel| texel != BACKDROP)
+                scene.on_gpu(gpu()).image.texels.iter().any(|&texel| texel != BACKDROP)
             };
             assert!(drawn(4.5) && !drawn(7.0), "{} {}", technique.name(), path.name());
         }

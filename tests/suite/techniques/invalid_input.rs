@@ -84,7 +84,7 @@ fn degenerate_particles_draw_finite_images() {
             change(&mut scene);
             let drawn = scene.on_gpu(gpu());
             assert!(
-                drawn.picture.texels.iter().all(|texel| texel.is_finite()),
+                drawn.image.texels.iter().all(|texel| texel.is_finite()),
                 "{}: GPU image not finite",
                 technique.name()
             );

@@ -126,7 +126,7 @@ pub fn convert_to_rgba16float(gpu: &Headless, texture: &wgpu::Texture) -> wgpu::
         return texture.clone();
     }
     let size = UVec2::new(texture.width(), texture.height());
-    let floats = gpu.target("host picture", size, wgpu::TextureFormat::Rgba16Float);
+    let floats = gpu.target("host image", size, wgpu::TextureFormat::Rgba16Float);
     let fragment = "@fragment fn fragment(@builtin(position) p: vec4f) -> @location(0) vec4f {
         return textureLoad(values, vec2i(p.xy), 0);
     }";

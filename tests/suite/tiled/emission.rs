@@ -44,7 +44,7 @@ fn emitter_on_the_gpu_matches_its_particles_as_a_slice() {
             let mut drawn = |path, particles| {
                 scene.settings.path = path;
                 host.draw_particles(gpu(), &scene, particles).unwrap();
-                host.picture(gpu()).unwrap()
+                host.image(gpu()).unwrap()
             };
             let tiled = drawn(RenderPath::Tiled, Particles::Emitter(&emission));
             assert!(drawn(RenderPath::Tiled, Particles::Emitter(&emission)) == tiled, "a second draw differs");

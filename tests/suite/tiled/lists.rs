@@ -37,14 +37,14 @@ fn bins_draw_all_sprites_while_their_lists_overflow() {
         scene.host.exact_filtering = cooperative;
         let mut host = Host::new(gpu(), &scene).unwrap();
         host.renderer.context().set_cooperative_traversal(cooperative);
-        let mut picture = |path| {
+        let mut image = |path| {
             scene.settings.path = path;
             host.draw_particles(gpu(), &scene, Particles::Buffer(ParticleBuffer::new(&buffer, count))).unwrap();
-            (host.picture(gpu()).unwrap(), host.renderer.memory_use().tiled.lists)
+            (host.image(gpu()).unwrap(), host.renderer.memory_use().tiled.lists)
         };
-        let (raster, _) = picture(RenderPath::Raster);
-        let (first, held) = picture(RenderPath::Tiled);
-        let (second, held_then) = picture(RenderPath::Tiled);
+        let (raster, _) = image(RenderPath::Raster);
+        let (first, held) = image(RenderPath::Tiled);
+        let (second, held_then) = image(RenderPath::Tiled);
         assert!(held_then > held, "the list buffer has not grown from {held} bytes");
         assert!(first == second);
         // The blend unit rounds each of the 140 layers.
@@ -118,7 +118,7 @@ fn sprites_out_of_view_do_not_change_the_image() {
     let [shown, both, hidden, none] = [shown, both, hidden, Vec::new()].map(|particles| {
         scene.particles = particles;
         host.draw(gpu(), &scene).unwrap();
-        host.picture(gpu()).unwrap()
+        host.image(gpu()).unwrap()
     });
     assert!(shown == both && hidden == none && shown != none);
 }
@@ -173,7 +173,7 @@ fn list_sizes_beyond_32_bits_do_not_wrap() {
     }
     gpu.submit(encoder).unwrap();
     let words = |buffer| bytemuck::pod_collect_to_vec::<u8, u32>(&gpu.read_buffer(buffer).unwrap());
-    // A list that exceeds its share of the 32-bit counter is not allocated.
+    // A list that exceeds its fraction of the 32-bit counter is not allocated.
     assert_eq!(words(&tally)[1], 74);
     let bins = words(&bins);
     assert_eq!((bins[0], bins[2]), (u32::MAX, u32::MAX));

@@ -34,7 +34,7 @@ fn tiled_path_rounds_eight_bit_targets_only_once() {
 
 /// Smoke of thin layers, which 8 bits change most. The CPU renderer rounds once for `tiled` and every layer for `raster`.
 /// Blend units round in ways of their own: compared with the CPU renderer, llvmpipe gives 51 dB and an NVIDIA H200 45;
-/// rounding once in place of every layer gives 42.7.
+/// rounding once instead of every layer gives 42.7.
 #[test]
 fn cpu_renderer_rounds_thin_smoke_as_the_path_does() {
     let mut scene = scene(Technique::Soft);

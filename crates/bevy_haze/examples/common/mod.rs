@@ -1,5 +1,5 @@
 //! Plugins of the examples: Bevy's default ones. With `--screenshot FILE [--seconds N]`, an example runs without a window,
-//! renders N seconds (default 3), saves the last picture as a PNG file and exits.
+//! renders N seconds (default 3), saves the last image as a PNG file and exits.
 
 use std::path::PathBuf;
 use std::time::Duration;
@@ -57,7 +57,7 @@ impl Plugin for ScreenshotPlugin {
         let mut image = Image::new_target_texture(SIZE[0], SIZE[1], TextureFormat::Rgba8UnormSrgb, None);
         image.texture_descriptor.usage |= TextureUsages::COPY_SRC;
         let target = app.world_mut().resource_mut::<Assets<Image>>().add(image);
-        // Frames of equal length give the same picture at each run.
+        // Frames of equal length give the same image at each run.
         app.insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_secs(1) / FRAMES_PER_SECOND))
             .insert_resource(Progress { file: self.file.clone(), target, frames_left: self.frames, taken: false })
             .add_systems(PostStartup, redirect_cameras)

@@ -26,7 +26,7 @@ fn cpu_time_of_a_view() {
     for (name, times) in [("haze alone", &mut alone), ("plugin with haze", &mut plugin)] {
         times.drain(..WARM_UP.min(times.len()));
         times.sort_by(f64::total_cmp);
-        let at = |share: f64| times[(share * (times.len() - 1) as f64) as usize] * 1e3;
+        let at = |fraction: f64| times[(fraction * (times.len() - 1) as f64) as usize] * 1e3;
         println!("{name}: median {:.3} ms, half of the frames {:.3} to {:.3} ms", at(0.5), at(0.25), at(0.75));
     }
 }

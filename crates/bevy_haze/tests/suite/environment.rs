@@ -74,19 +74,19 @@ fn matte_smoke() -> SmokeAsset {
     asset
 }
 
-/// Mean color of a disc on a ball, at this share of its radius above its center.
+/// Mean color of a disc on a ball, at this fraction of its radius above its center.
 fn color(picture: &Picture, ball: usize, above: f32) -> [f32; 3] {
     let pixels_per_metre = SIZE.y as f32 / VIEW_HEIGHT;
     let right = 0.5 * SIZE.x as f32 + PLACES[ball] * pixels_per_metre;
     let center = Vec2::new(right, 0.5 * SIZE.y as f32 - above * RADIUS * pixels_per_metre);
-    let place = |index: usize| Vec2::new((index as u32 % SIZE.x) as f32 + 0.5, (index as u32 / SIZE.x) as f32 + 0.5);
-    let is_inside = |index: &usize| place(*index).distance(center) < 0.15 * RADIUS * pixels_per_metre;
+    let position = |index: usize| Vec2::new((index as u32 % SIZE.x) as f32 + 0.5, (index as u32 / SIZE.x) as f32 + 0.5);
+    let is_inside = |index: &usize| position(*index).distance(center) < 0.15 * RADIUS * pixels_per_metre;
     let pixels: Vec<_> = (0..picture.pixels.len()).filter(is_inside).map(|index| picture.pixels[index]).collect();
     assert!(pixels.len() > 20, "{}", pixels.len());
     [0, 1, 2].map(|channel| pixels.iter().map(|pixel| pixel[channel]).sum::<f32>() / pixels.len() as f32)
 }
 
-/// Asserts that smoke and sphere are alike from top to bottom. `tolerance`: of each color, as a share of the brightest.
+/// Asserts that smoke and sphere are alike from top to bottom. `tolerance`: of each color, as a fraction of the brightest.
 fn assert_alike(picture: &Picture, tolerance: f32) {
     let heights = [0.7, 0.35, 0.0, -0.35, -0.7];
     let pairs = heights.map(|above| [color(picture, 0, above), color(picture, 1, above)]);
@@ -116,8 +116,8 @@ fn red_above_blue_below() -> Image {
             3 => -1.0,
             _ => -v,
         };
-        let share = 0.5 + 0.5 * up / (1.0 + u * u + v * v).sqrt();
-        [0, 1, 2].map(|channel| RED[channel] * share + BLUE[channel] * (1.0 - share))
+        let fraction = 0.5 + 0.5 * up / (1.0 + u * u + v * v).sqrt();
+        [0, 1, 2].map(|channel| RED[channel] * fraction + BLUE[channel] * (1.0 - fraction))
     };
     cube_map(size, TextureFormat::Rgba16Float, (0..6 * size * size).map(texel))
 }

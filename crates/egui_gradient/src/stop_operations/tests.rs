@@ -10,7 +10,7 @@ fn stops(list: &[(f32, u8, Curve)]) -> Vec<RampStop> {
     list.iter().map(|&(at, gray, curve)| RampStop { curve, ..RampStop::new(at, HexColor([gray; 3])) }).collect()
 }
 
-fn places(stops: &[RampStop]) -> Vec<f32> {
+fn positions(stops: &[RampStop]) -> Vec<f32> {
     stops.iter().map(|stop| stop.at).collect()
 }
 
@@ -100,15 +100,15 @@ fn stops_are_distributed_between_the_first_and_the_last() {
     let mut list = stops(&[(0.2, 0, SMOOTH), (0.3, 1, SMOOTH), (0.3, 2, SMOOTH), (0.8, 3, SMOOTH)]);
     distribute(&mut list, &mut all());
     assert_eq!(grays(&list), [0, 1, 2, 3]);
-    for (at, expected) in places(&list).into_iter().zip([0.2, 0.4, 0.6, 0.8]) {
+    for (at, expected) in positions(&list).into_iter().zip([0.2, 0.4, 0.6, 0.8]) {
         assert!((at - expected).abs() < 1.0e-6, "{at}");
     }
     let mut list = stops(&[(0.5, 0, SMOOTH), (0.5, 1, SMOOTH), (0.5, 2, SMOOTH)]);
     distribute(&mut list, &mut all());
-    assert_eq!(places(&list), [0.0, 0.5, 1.0]);
+    assert_eq!(positions(&list), [0.0, 0.5, 1.0]);
     let mut one = stops(&[(0.5, 0, SMOOTH)]);
     distribute(&mut one, &mut all());
-    assert_eq!(places(&one), [0.0]);
+    assert_eq!(positions(&one), [0.0]);
 }
 
 #[test]
@@ -121,7 +121,7 @@ fn selected_stops_move_together_and_keep_their_distances() {
     assert!((list[3].at - 1.0).abs() < 1.0e-6);
     // At the end of the gradient they stop and keep their distances.
     move_to(&mut list, &mut selection, 5.0);
-    assert!((list[1].at - 0.7).abs() < 1.0e-6 && list[3].at <= 1.0, "{:?}", places(&list));
+    assert!((list[1].at - 0.7).abs() < 1.0e-6 && list[3].at <= 1.0, "{:?}", positions(&list));
     move_to(&mut list, &mut selection, -5.0);
     assert_eq!((grays(&list), list[2].at), (vec![0, 1, 2, 3, 4], 0.0));
     // Selected stops that are not adjacent can pass unselected ones between them.
@@ -152,7 +152,7 @@ fn selected_stops_are_removed_copied_and_scaled() {
     let mut list = from;
     let mut of = selection;
     scale(&mut list, &mut of, 2.5);
-    assert_eq!((grays(&list), places(&list)), (vec![0, 2, 1, 3], vec![0.0, 0.4, 0.5, 1.0]));
+    assert_eq!((grays(&list), positions(&list)), (vec![0, 2, 1, 3], vec![0.0, 0.4, 0.5, 1.0]));
     assert_eq!(selected(&of), [2, 3]);
 }
 
@@ -165,7 +165,7 @@ fn operations_on_a_part_leave_the_other_stops_unchanged() {
         let mut of = part.clone();
         change(&mut list, &mut of);
         assert_eq!(grays(&list), expected.iter().map(|(_, gray)| *gray).collect::<Vec<_>>());
-        for (at, (expected, _)) in places(&list).into_iter().zip(expected) {
+        for (at, (expected, _)) in positions(&list).into_iter().zip(expected) {
             assert!((at - expected).abs() < 1.0e-6, "{at} {expected}");
         }
         assert_eq!(selected(&of), which);
@@ -184,7 +184,7 @@ fn flipping_constant_steps_keeps_their_number() {
     let mut list = stops(&[(0.0, 1, hard), (0.45, 2, hard), (0.72, 3, hard)]);
     flip(&mut list, &mut all());
     assert_eq!(grays(&list), [3, 2, 1]);
-    for (at, expected) in places(&list).into_iter().zip([0.0, 0.28, 0.55]) {
+    for (at, expected) in positions(&list).into_iter().zip([0.0, 0.28, 0.55]) {
         assert!((at - expected).abs() < 1.0e-6, "{at}");
     }
 }

@@ -71,7 +71,7 @@ fn the_eyedropper_picks_a_color_and_blocks_other_widgets() {
     begin(&mut harness);
     click(&mut harness, at, NONE);
     harness.run_steps(2);
-    assert_eq!((places(&harness), color(&harness, 0)), (vec![0.0, 1.0], expected));
+    assert_eq!((positions(&harness), color(&harness, 0)), (vec![0.0, 1.0], expected));
     assert!(expected[0] > 100, "{expected:?}");
     assert_eq!(steps(&harness), ["color of a stop"]);
     assert!(harness.state().editor.state.eyedropper.is_none());
@@ -80,7 +80,7 @@ fn the_eyedropper_picks_a_color_and_blocks_other_widgets() {
     key(&mut harness, Key::Escape, NONE);
     assert!(harness.state().editor.state.eyedropper.is_none());
     click(&mut harness, at, NONE);
-    assert_eq!(places(&harness).len(), 3);
+    assert_eq!(positions(&harness).len(), 3);
 }
 
 #[test]

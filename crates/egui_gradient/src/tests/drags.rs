@@ -15,21 +15,21 @@ fn positions_snap_to_the_chosen_number_of_parts() {
     key(&mut harness, Key::Enter, NONE);
     let from = handle(&harness, 1).center();
     drag(&mut harness, from, 0.14 * width, Modifiers::COMMAND);
-    assert_eq!(places(&harness), [0.0, 0.625, 1.0]);
+    assert_eq!(positions(&harness), [0.0, 0.625, 1.0]);
     // With snapping switched on, positions snap without Ctrl, and Ctrl disables it.
     harness.get_by_label("Snap").click();
     harness.run_steps(2);
     let from = handle(&harness, 1).center();
     drag(&mut harness, from, 0.11 * width, NONE);
-    assert_eq!(places(&harness), [0.0, 0.75, 1.0]);
+    assert_eq!(positions(&harness), [0.0, 0.75, 1.0]);
     let from = handle(&harness, 1).center();
     drag(&mut harness, from, 0.03 * width, Modifiers::COMMAND);
-    assert!((places(&harness)[1] - 0.78).abs() < 0.002, "{:?}", places(&harness));
+    assert!((positions(&harness)[1] - 0.78).abs() < 0.002, "{:?}", positions(&harness));
     key(&mut harness, Key::ArrowLeft, NONE);
-    assert_eq!(places(&harness), [0.0, 0.75, 1.0]);
+    assert_eq!(positions(&harness), [0.0, 0.75, 1.0]);
     let at = on_strip(&harness, 0.2);
     click(&mut harness, at, NONE);
-    assert_eq!(places(&harness), [0.0, 0.25, 0.75, 1.0]);
+    assert_eq!(positions(&harness), [0.0, 0.25, 0.75, 1.0]);
 }
 
 #[test]
@@ -45,7 +45,7 @@ fn with_shift_a_stop_snaps_to_another_stop() {
     // It snaps only to a stop nearby.
     let from = handle(&harness, 1).center();
     drag(&mut harness, from, -0.2 * width, Modifiers::SHIFT);
-    assert!((places(&harness)[1] - 0.4).abs() < 0.005, "{:?}", places(&harness));
+    assert!((positions(&harness)[1] - 0.4).abs() < 0.005, "{:?}", positions(&harness));
 }
 
 /// Presses at a position and moves the pointer without releasing the button.
@@ -79,7 +79,7 @@ fn escape_cancels_a_drag_without_an_undo_step() {
     // The next drag works as usual.
     let from = handle(&harness, 1).center();
     drag(&mut harness, from, 0.1 * width, NONE);
-    assert_eq!((places(&harness), steps(&harness)), (vec![0.0, 0.4, 0.5, 1.0], vec!["move a stop"]));
+    assert_eq!((positions(&harness), steps(&harness)), (vec![0.0, 0.4, 0.5, 1.0], vec!["move a stop"]));
 }
 
 #[test]
@@ -88,7 +88,7 @@ fn a_drag_with_alt_moves_a_copy() {
     let from = handle(&harness, 1).center();
     let width = strip(&harness).width();
     drag(&mut harness, from, 0.2 * width, Modifiers::ALT);
-    assert_eq!((places(&harness), grays(&harness)), (vec![0.0, 0.3, 0.5, 1.0], vec![0, 10, 10, 30]));
+    assert_eq!((positions(&harness), grays(&harness)), (vec![0.0, 0.3, 0.5, 1.0], vec![0, 10, 10, 30]));
     assert_eq!((steps(&harness), harness.state().editor.state.selection.lead()), (vec!["copy a stop"], 2));
 }
 
@@ -103,13 +103,13 @@ fn alt_during_a_drag_slows_it_to_a_tenth_and_the_readout_shows_the_position() {
     harness.event(Event::ModifiersChanged(Modifiers::ALT));
     harness.hover_at(fine);
     harness.run_steps(2);
-    assert!((harness.state().row.stops[1].at - 0.51).abs() < 1.0e-4, "{:?}", places(&harness));
+    assert!((harness.state().row.stops[1].at - 0.51).abs() < 1.0e-4, "{:?}", positions(&harness));
     assert!(harness.query_by_label("0.5100  #0a0a0a  fine").is_some());
     // After Alt is released, the stop follows the pointer at full speed.
     harness.event(Event::ModifiersChanged(NONE));
     harness.hover_at(from + Vec2::new(0.4 * width, 0.0));
     harness.run_steps(2);
-    assert!((harness.state().row.stops[1].at - 0.61).abs() < 1.0e-4, "{:?}", places(&harness));
+    assert!((harness.state().row.stops[1].at - 0.61).abs() < 1.0e-4, "{:?}", positions(&harness));
     button(&mut harness, from + Vec2::new(0.4 * width, 0.0), false, NONE);
     harness.run_steps(2);
     assert_eq!((steps(&harness), harness.state().row.stops.len()), (vec!["move a stop"], 3));
@@ -133,18 +133,18 @@ fn a_drag_ends_if_the_host_replaces_the_stops() {
 fn drag_through(
     harness: &mut Harness<'_, Host>,
     from: Pos2,
-    places: &[Pos2],
+    positions: &[Pos2],
     mut check: impl FnMut(&Harness<'_, Host>, usize),
 ) {
     harness.hover_at(from);
     harness.step();
     button(harness, from, true, NONE);
-    for (index, place) in places.iter().enumerate() {
-        harness.hover_at(*place);
+    for (index, position) in positions.iter().enumerate() {
+        harness.hover_at(*position);
         harness.run_steps(2);
         check(harness, index);
     }
-    button(harness, places[places.len() - 1], false, NONE);
+    button(harness, positions[positions.len() - 1], false, NONE);
     harness.run_steps(2);
 }
 
@@ -195,7 +195,7 @@ fn the_middle_between_two_stops_is_dragged() {
     };
     drag(&mut harness, middle, 0.1 * width, NONE);
     assert_eq!((grays(&harness), steps(&harness)), (vec![0, color, 200, 30], vec!["add a stop"]));
-    assert!((places(&harness)[1] - 0.3).abs() < 0.01, "{:?}", places(&harness));
+    assert!((positions(&harness)[1] - 0.3).abs() < 0.01, "{:?}", positions(&harness));
     // No mark where there is no room for it.
     assert!(harness.query_by_label("middle between stop 2 and 3").is_none());
 }

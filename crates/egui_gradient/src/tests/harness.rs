@@ -40,7 +40,7 @@ pub fn host(stops: &[(f32, u8)]) -> Harness<'static, Host> {
     harness
 }
 
-pub fn places(harness: &Harness<'_, Host>) -> Vec<f32> {
+pub fn positions(harness: &Harness<'_, Host>) -> Vec<f32> {
     harness.state().row.stops.iter().map(|stop| (stop.at * 1000.0).round() / 1000.0).collect()
 }
 

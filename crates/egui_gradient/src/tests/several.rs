@@ -59,11 +59,11 @@ fn selected_stops_are_dragged_together_in_one_step() {
     let from = handle(&harness, 1).center();
     let width = strip(&harness).width();
     drag(&mut harness, from, 0.4 * width, NONE);
-    assert_eq!((places(&harness), grays(&harness)), (vec![0.0, 0.6, 0.7, 0.8, 1.0], vec![0, 10, 30, 20, 40]));
+    assert_eq!((positions(&harness), grays(&harness)), (vec![0.0, 0.6, 0.7, 0.8, 1.0], vec![0, 10, 30, 20, 40]));
     assert_eq!((selected(&harness), steps(&harness)), (vec![1, 3], vec!["move stops"]));
     let from = handle(&harness, 3).center();
     drag(&mut harness, from, 9.0 * width, NONE);
-    assert_eq!(places(&harness), [0.0, 0.7, 0.8, 1.0, 1.0], "at the end they keep their distances");
+    assert_eq!(positions(&harness), [0.0, 0.7, 0.8, 1.0, 1.0], "at the end they keep their distances");
     // A drag with Alt moves copies of both.
     let from = handle(&harness, 2).center();
     drag(&mut harness, from, -0.5 * width, Modifiers::ALT);
@@ -79,7 +79,7 @@ fn keys_select_and_change_several_stops() {
     key(&mut harness, Key::ArrowDown, SHIFT);
     assert_eq!(selected(&harness), [1, 2]);
     key(&mut harness, Key::ArrowRight, SHIFT);
-    assert_eq!(places(&harness), [0.0, 0.21, 0.41, 0.7, 1.0]);
+    assert_eq!(positions(&harness), [0.0, 0.21, 0.41, 0.7, 1.0]);
     // Ctrl moves only the focus; Space adds the focused stop.
     key(&mut harness, Key::ArrowDown, CTRL);
     key(&mut harness, Key::ArrowDown, CTRL);
@@ -105,9 +105,9 @@ fn buttons_and_fields_change_several_stops() {
     click_handle(&mut harness, 1, NONE);
     click_handle(&mut harness, 3, SHIFT);
     press(&mut harness, "Distribute");
-    assert_eq!(places(&harness), [0.0, 0.2, 0.45, 0.7, 1.0]);
+    assert_eq!(positions(&harness), [0.0, 0.2, 0.45, 0.7, 1.0]);
     press(&mut harness, "Flip");
-    assert_eq!((places(&harness), grays(&harness)), (vec![0.0, 0.2, 0.45, 0.7, 1.0], vec![0, 30, 20, 10, 40]));
+    assert_eq!((positions(&harness), grays(&harness)), (vec![0.0, 0.2, 0.45, 0.7, 1.0], vec![0, 30, 20, 10, 40]));
     press(&mut harness, "Mirror");
     assert_eq!(grays(&harness), [0, 30, 20, 10, 20, 30, 40]);
     assert_eq!(selected(&harness), [1, 2, 3, 4, 5]);
@@ -140,7 +140,7 @@ fn the_middle_button_removes_a_stop() {
     assert_eq!((grays(&harness), steps(&harness)), (vec![0, 20, 30, 40], vec!["remove a stop"]));
 }
 
-fn type_place(harness: &mut Harness<'_, Host>, text: &str) {
+fn type_position(harness: &mut Harness<'_, Host>, text: &str) {
     harness.get_by_role_and_label(Role::SpinButton, "Position").click();
     harness.run_steps(2);
     harness.event(Event::Text(text.into()));
@@ -154,16 +154,16 @@ fn relative_changes_can_be_typed() {
     let mut harness = host(&FIVE);
     click_handle(&mut harness, 1, NONE);
     for (text, expected) in [("+0.05", 0.25), ("*2", 0.5), ("/4", 0.125), ("-0.025", 0.1), ("0.3", 0.3), ("x", 0.3)] {
-        type_place(&mut harness, text);
+        type_position(&mut harness, text);
         // The index of the lead changes if it passes another stop.
-        assert_eq!(places(&harness)[harness.state().editor.state.selection.lead()], expected, "{text}");
+        assert_eq!(positions(&harness)[harness.state().editor.state.selection.lead()], expected, "{text}");
     }
     assert_eq!(steps(&harness), ["move a stop"; 5], "each is done once");
     click_handle(&mut harness, 2, SHIFT);
-    type_place(&mut harness, "+0.1");
-    assert_eq!(places(&harness), [0.0, 0.4, 0.5, 0.7, 1.0]);
-    type_place(&mut harness, "*0.5");
-    assert_eq!(places(&harness), [0.0, 0.2, 0.25, 0.7, 1.0]);
+    type_position(&mut harness, "+0.1");
+    assert_eq!(positions(&harness), [0.0, 0.4, 0.5, 0.7, 1.0]);
+    type_position(&mut harness, "*0.5");
+    assert_eq!(positions(&harness), [0.0, 0.2, 0.25, 0.7, 1.0]);
 }
 
 #[test]

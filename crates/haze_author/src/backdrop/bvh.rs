@@ -230,7 +230,7 @@ fn split(order: &mut [u32], extents: &[Extent]) -> usize {
             order.sort_by_key(|&index| bin(index) >= at);
             order.partition_point(|&index| bin(index) < at)
         }
-        // All in one place.
+        // All in one point.
         None => order.len() / 2,
     }
 }
@@ -269,7 +269,7 @@ mod tests {
     fn the_hierarchy_finds_the_triangle_that_a_test_of_all_finds() {
         let corners: Vec<_> = (0..700)
             .map(|index| [0, 1, 2].map(|salt| 4.0 * random(index, 7) + 0.6 * random(index, salt)))
-            // Some in one place, which no plane divides.
+            // Some in one point, which no plane divides.
             .chain([[Vec3::ZERO, Vec3::X, Vec3::Y]; 9])
             .collect();
         let bvh = Bvh::new(&corners);

@@ -60,7 +60,7 @@ impl ColorTexture {
         self.levels.iter().map(|level| 4 * level.texels.len() as u64).sum()
     }
 
-    /// Linear color at a place, filtered between texels and levels. Level 0 is full size.
+    /// Linear color at a position, filtered between texels and levels. Level 0 is full size.
     pub fn sample(&self, uv: Vec2, level: f32) -> Vec4 {
         let last = self.levels.len().saturating_sub(1) as f32;
         let level = level.clamp(0.0, last);
@@ -72,11 +72,11 @@ impl ColorTexture {
 
     fn filtered(&self, level: usize, uv: Vec2) -> Vec4 {
         let Some(image) = self.levels.get(level) else { return Vec4::ONE };
-        let place = uv * image.size.as_vec2() - 0.5;
-        let at = place.floor().as_ivec2();
-        let mix = place - place.floor();
+        let position = uv * image.size.as_vec2() - 0.5;
+        let at = position.floor().as_ivec2();
+        let mix = position - position.floor();
         let texel = |x, y| {
-            let wrapped = |place: i32, axis: usize| wrap(place, image.size[axis] as i32, self.wrap[axis]);
+            let wrapped = |position: i32, axis: usize| wrap(position, image.size[axis] as i32, self.wrap[axis]);
             linear(image.load(IVec2::new(wrapped(at.x.saturating_add(x), 0), wrapped(at.y.saturating_add(y), 1))))
         };
         let row = |y| texel(0, y).lerp(texel(1, y), mix.x);
@@ -84,13 +84,13 @@ impl ColorTexture {
     }
 }
 
-fn wrap(place: i32, size: i32, wrap: Wrap) -> i32 {
+fn wrap(position: i32, size: i32, wrap: Wrap) -> i32 {
     match wrap {
-        Wrap::Repeat => place.rem_euclid(size),
-        Wrap::Clamp => place.clamp(0, size - 1),
+        Wrap::Repeat => position.rem_euclid(size),
+        Wrap::Clamp => position.clamp(0, size - 1),
         Wrap::Mirror => {
-            let place = place.rem_euclid(2 * size);
-            place.min(2 * size - 1 - place)
+            let position = position.rem_euclid(2 * size);
+            position.min(2 * size - 1 - position)
         }
     }
 }

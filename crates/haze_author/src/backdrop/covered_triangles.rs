@@ -5,7 +5,7 @@ use std::collections::HashSet;
 use super::scene_mesh::{SceneMaterial, SceneVertex};
 
 /// Bits of the corners, in an order that does not depend on the first one or on the winding.
-type Place = [[u32; 3]; 3];
+type Corners = [[u32; 3]; 3];
 
 /// Removes triangles that a later one covers in the order of drawing: one of the same corners that is solid, or the same again
 /// if it is cut out. Returns the number of removed ones. `parts`: three corners per triangle, for each material.
@@ -17,9 +17,13 @@ pub fn remove_covered(parts: &mut [Vec<SceneVertex>], materials: &[SceneMaterial
         let mut cut_out = HashSet::new();
         let mut kept = Vec::with_capacity(vertices.len());
         for triangle in vertices.as_chunks::<3>().0.iter().rev() {
-            let place = place_of(triangle);
-            let is_kept = !solid.contains(&place)
-                && if is_cut_out { cut_out.insert(bytemuck::bytes_of(triangle).to_vec()) } else { solid.insert(place) };
+            let corners = corners_of(triangle);
+            let is_kept = !solid.contains(&corners)
+                && if is_cut_out {
+                    cut_out.insert(bytemuck::bytes_of(triangle).to_vec())
+                } else {
+                    solid.insert(corners)
+                };
             if is_kept {
                 kept.extend(triangle.iter().rev());
             } else {
@@ -32,11 +36,11 @@ pub fn remove_covered(parts: &mut [Vec<SceneVertex>], materials: &[SceneMaterial
     removed
 }
 
-fn place_of(triangle: &[SceneVertex; 3]) -> Place {
+fn corners_of(triangle: &[SceneVertex; 3]) -> Corners {
     // The sum makes 0 of -0.
-    let mut place = triangle.map(|corner| (corner.position + 0.0).to_array().map(f32::to_bits));
-    place.sort_unstable();
-    place
+    let mut corners = triangle.map(|corner| (corner.position + 0.0).to_array().map(f32::to_bits));
+    corners.sort_unstable();
+    corners
 }
 
 #[cfg(test)]

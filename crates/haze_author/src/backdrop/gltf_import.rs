@@ -211,7 +211,7 @@ impl Import {
         if counts.into_iter().flatten().any(|other| other != count) {
             return Err(damaged("their attributes differ in number; expected a whole file".into()));
         }
-        let place = |index: usize| {
+        let position = |index: usize| {
             let of =
                 |list: &Option<Vec<[f32; 3]>>| list.as_ref().and_then(|list| list.get(index)).copied().map(Vec3::from);
             let rotation = rotations.as_ref().and_then(|list| list.get(index)).copied();
@@ -223,7 +223,7 @@ impl Import {
             );
             *world * local
         };
-        Ok((0..count).map(place).collect())
+        Ok((0..count).map(position).collect())
     }
 
     /// Adds the triangles of a primitive, once for each transform.
@@ -277,13 +277,13 @@ impl Import {
                 if let Some(index) = indices.into_iter().find(|&index| index >= count) {
                     return Err(format!("{node} names corner {index} of {count}; expected a whole file"));
                 }
-                let places = indices.map(|index| world.transform_point3(shape.positions[index]));
+                let positions = indices.map(|index| world.transform_point3(shape.positions[index]));
                 let is_far = |place: &Vec3| !place.is_finite() || place.abs().max_element() > MAX_DISTANCE;
-                if let Some((index, place)) = indices.iter().zip(&places).find(|(_, place)| is_far(place)) {
+                if let Some((index, place)) = indices.iter().zip(&positions).find(|(_, place)| is_far(place)) {
                     let expected = format!("finite numbers up to {MAX_DISTANCE} m from the origin");
                     return Err(format!("corner {index} of {node} is at {place}; expected {expected}"));
                 }
-                let across = (places[1] - places[0]).cross(places[2] - places[0]);
+                let across = (positions[1] - positions[0]).cross(positions[2] - positions[0]);
                 if across == Vec3::ZERO {
                     continue;
                 }
@@ -296,7 +296,7 @@ impl Import {
                     let normal = shape.normals.get(index).map_or(flat, |normal| placed.normals * *normal);
                     let normal = normal.normalize_or(flat);
                     vertices.push(SceneVertex {
-                        position: places[corner],
+                        position: positions[corner],
                         u: uvs[corner].x,
                         normal: if normal.is_finite() { normal } else { flat },
                         v: uvs[corner].y,

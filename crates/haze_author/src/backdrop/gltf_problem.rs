@@ -34,7 +34,7 @@ pub fn gltf_problem(error: &gltf::Error) -> String {
     }
 }
 
-/// Reason why text is no JSON, with its place.
+/// Reason why text is no JSON, with its position.
 pub fn json_problem(error: &AssetError) -> String {
     match error {
         AssetError::Text { line, column, reason, .. } => {

@@ -36,7 +36,7 @@ pub fn light_of(light: &gltf::khr_lights_punctual::Light<'_>, world: &Affine3A) 
     };
     let finite = |value: f32| if value.is_finite() { value.max(0.0) } else { 0.0 };
     let intensity = finite(light.intensity() / (LUMENS_PER_WATT * std::f32::consts::PI)).min(1.0e9);
-    // The distance at which it has faded to what no picture shows.
+    // The distance at which it has faded to what no image shows.
     let seen = (intensity / 1.0e-3).sqrt().clamp(5.0, 1.0e3);
     let mut found = Light {
         kind,

@@ -62,9 +62,9 @@ pub const BLENDER_SKY_ROTATION: f32 = 90.0;
 /// Scene and sky that a preset names. Clones share them. Two are equal if they share them: files are not compared.
 #[derive(Clone, Debug, Default)]
 pub struct Backdrop {
-    /// Scene in place of the demo scene.
+    /// Scene instead of the demo scene.
     pub scene: Option<Arc<SceneMesh>>,
-    /// Sky in place of the sky's colors.
+    /// Sky instead of the sky's colors.
     pub sky: Option<Arc<SkyImage>>,
 }
 
@@ -119,7 +119,7 @@ impl Backdrop {
         Ok(())
     }
 
-    /// Loads a file in place of that of its kind.
+    /// Loads a file instead of that of its kind.
     ///
     /// # Errors
     /// As [`load_scene`] and [`load_sky`].

@@ -38,7 +38,7 @@ pub struct SceneCamera {
     pub name: String,
     /// Its own name: in Blender, that of the object's data.
     pub own_name: Option<String>,
-    /// Its place and planes are in units of the file; it has the default exposure.
+    /// Its position and planes are in units of the file; it has the default exposure.
     pub camera: Camera,
 }
 
@@ -79,7 +79,7 @@ pub struct SceneMesh {
     pub bvh: Bvh,
     /// Perspective cameras, in the order of the file's tree.
     pub cameras: Vec<SceneCamera>,
-    /// Lights. Their places and ranges are in units of the file.
+    /// Lights. Their positions and ranges are in units of the file.
     pub lights: Vec<Light>,
     /// Files that it was read from: the scene file first, then buffers and images beside it.
     pub files: Vec<PathBuf>,

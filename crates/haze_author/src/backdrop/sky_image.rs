@@ -56,9 +56,9 @@ impl SkyImage {
 
     /// Radiance of a direction, filtered between texels.
     pub fn sample(&self, direction: Vec3) -> Vec3 {
-        let place = uv(direction) * self.texels.size.as_vec2() - 0.5;
-        let at = place.floor().as_ivec2();
-        let mix = place - place.floor();
+        let position = uv(direction) * self.texels.size.as_vec2() - 0.5;
+        let at = position.floor().as_ivec2();
+        let mix = position - position.floor();
         let width = self.texels.size.x as i32;
         let texel = |x: i32, y: i32| color(self.texels.load(IVec2::new((at.x + x).rem_euclid(width), at.y + y)));
         let row = |y| texel(0, y).lerp(texel(1, y), mix.x);
@@ -88,7 +88,7 @@ pub fn uv(direction: Vec3) -> Vec2 {
     Vec2::new(across, direction.y.clamp(-1.0, 1.0).acos() / PI)
 }
 
-/// Direction of a place in the panorama.
+/// Direction of a position in the panorama.
 pub(super) fn direction(uv: Vec2) -> Vec3 {
     let (sin, cos) = (2.0 * PI * (uv.x - 0.5)).sin_cos();
     let (down, up) = (PI * uv.y).sin_cos();
@@ -111,8 +111,8 @@ fn light(image: &Image<[f16; 4]>) -> SkyLight {
         for first in (0..size.x).step_by(block as usize) {
             let end = (first + block).min(size.x);
             let sum: Vec3 = (first..end).map(|x| color(image.texels[(y * size.x + x) as usize])).sum();
-            let place = Vec2::new(0.5 * (first + end) as f32, y as f32 + 0.5) / size.as_vec2();
-            light.add(direction(place), sum, angle);
+            let position = Vec2::new(0.5 * (first + end) as f32, y as f32 + 0.5) / size.as_vec2();
+            light.add(direction(position), sum, angle);
         }
     }
     light
@@ -124,9 +124,9 @@ mod tests {
 
     fn sky(of: impl Fn(Vec3) -> Vec3) -> SkyImage {
         let size = UVec2::new(64, 32);
-        let place =
+        let position =
             |index: u32| Vec2::new((index % size.x) as f32 + 0.5, (index / size.x) as f32 + 0.5) / size.as_vec2();
-        let radiance = (0..size.x * size.y).map(|index| of(direction(place(index))));
+        let radiance = (0..size.x * size.y).map(|index| of(direction(position(index))));
         SkyImage::new(size, radiance, Path::new("sky.hdr")).unwrap()
     }
 

@@ -76,7 +76,7 @@ fn decode(bytes: &[u8]) -> Result<Decoded, String> {
 
 /// Matrix from the colors of a Radiance file to radiance. A program that multiplies all colors says the factor in its header:
 /// `EXPOSURE`, and for each channel `COLORCORR`. Several lines multiply each other, as the decoder returns them.
-/// (Radiance, "The RADIANCE Picture File Format")
+/// (Radiance, "The RADIANCE Image File Format")
 fn to_radiance(header: &HdrMetadata) -> Result<Option<DMat3>, String> {
     let exposure = header.exposure.unwrap_or(1.0);
     let (red, green, blue) = header.color_correction.unwrap_or((1.0, 1.0, 1.0));

@@ -12,7 +12,7 @@ pub struct SkyLight {
     pub coefficients: [Vec3; 9],
 }
 
-/// Squares of the factors of the harmonics, times the share of each order in matte light: 1, 2/3, 1/4.
+/// Squares of the factors of the harmonics, times the fraction of each order in matte light: 1, 2/3, 1/4.
 const FACTORS: [f32; 9] = {
     const FIRST: f32 = 2.0 / 3.0 * 0.488_602_5 * 0.488_602_5;
     const MIXED: f32 = 0.25 * 1.092_548_4 * 1.092_548_4;

@@ -66,7 +66,7 @@ impl Glb {
         self.nodes.push(format!(r#"{{"name":"{name}",{more}}}"#));
     }
 
-    /// A mesh at a place, turned about the vertical axis, degrees.
+    /// A mesh at a position, turned about the vertical axis, degrees.
     fn place(&mut self, name: &str, mesh: usize, at: Vec3, turn: f32, scale: Vec3) {
         let rotation = Quat::from_rotation_y(turn.to_radians()).to_array();
         let more = format!(
@@ -323,9 +323,9 @@ fn triangles_camera_and_lights_of_the_example_come_back() {
 fn nodes_are_transformed_and_normals_made_up() {
     let nodes = r#"{"children":[1],"translation":[0,0,5]},{"mesh":0,"scale":[-2,2,2]}"#;
     let scene = load(&triangle(CORNERS, nodes, "")).unwrap();
-    let places: Vec<_> = scene.vertices.iter().map(|vertex| vertex.position).collect();
+    let positions: Vec<_> = scene.vertices.iter().map(|vertex| vertex.position).collect();
     // Mirrored: the corners are turned round, so that the front stays in front.
-    assert_eq!(places, [Vec3::new(0.0, 0.0, 5.0), Vec3::new(0.0, 2.0, 5.0), Vec3::new(-2.0, 0.0, 5.0)]);
+    assert_eq!(positions, [Vec3::new(0.0, 0.0, 5.0), Vec3::new(0.0, 2.0, 5.0), Vec3::new(-2.0, 0.0, 5.0)]);
     assert!(scene.vertices.iter().all(|vertex| vertex.normal.abs_diff_eq(Vec3::Z, 1e-6)), "{:?}", scene.vertices);
     assert!(scene.cameras.is_empty() && scene.lights.is_empty());
 }
@@ -391,7 +391,7 @@ fn skies_that_cannot_be_read_say_what_would_be_right() {
     };
     let whole = dusk();
     assert_eq!(load(&whole).unwrap().texels.size, UVec2::new(128, 64));
-    for part in [&whole[..0], &whole[..20], &whole[..whole.len() / 2], b"no picture"] {
+    for part in [&whole[..0], &whole[..20], &whole[..whole.len() / 2], b"no image"] {
         let said = load(part).unwrap_err();
         assert!(
             said.contains("sky.hdr: ") && said.contains("; expected a Radiance (.hdr) or OpenEXR (.exr) image"),

@@ -235,7 +235,7 @@ impl ColumnMap {
     /// error says what is expected.
     pub fn set(&self, column: usize, value: f64, values: &mut RowValues) -> Result<(), String> {
         let Some(Column { role: Some(role), kind, .. }) = self.columns.get(column) else { return Ok(()) };
-        let share = -LIFETIME_TOLERANCE..=1.0 + LIFETIME_TOLERANCE;
+        let fraction = -LIFETIME_TOLERANCE..=1.0 + LIFETIME_TOLERANCE;
         // NaN fails every range check.
         let (is_good, expected) = match role {
             ColumnRole::X
@@ -254,9 +254,11 @@ impl ColumnMap {
             | ColumnRole::Heat => ((0.0..=MAX_MAGNITUDE).contains(&value), "0 or more, up to 1e9"),
             ColumnRole::Age if self.has_lives => (value.abs() <= MAX_MAGNITUDE, "a number up to 1e9"),
             ColumnRole::Life if self.has_lives => ((0.0..=MAX_MAGNITUDE).contains(&value), "0 or more, up to 1e9"),
-            ColumnRole::Age => (share.contains(&value), "a fraction of the lifetime, 0 to 1, or a life column as well"),
+            ColumnRole::Age => {
+                (fraction.contains(&value), "a fraction of the lifetime, 0 to 1, or a life column as well")
+            }
             ColumnRole::Life => {
-                (share.contains(&value), "a fraction of the lifetime, 0 to 1, or an age column as well")
+                (fraction.contains(&value), "a fraction of the lifetime, 0 to 1, or an age column as well")
             }
             ColumnRole::Id => (value.abs() <= MAX_ID && value.fract() == 0.0, "a whole number"),
         };

@@ -15,9 +15,9 @@ impl ParticleFrames {
         if source.after == EndBehavior::Loop {
             frame = frame.rem_euclid(f64::from(self.frame_count()));
         }
-        let Some(FramePair { before, after, share }) = self.frames_around(frame) else { return };
+        let Some(FramePair { before, after, fraction }) = self.frames_around(frame) else { return };
         let provided = before.provided();
-        before.interpolate(after, share, |particle, weight| {
+        before.interpolate(after, fraction, |particle, weight| {
             let id = particle.id as u64;
             let random = pcg3d(UVec3::new(id as u32, (id >> 32) as u32, 0));
             let y_up = |v: Vec3| if source.up == UpAxis::Z { Vec3::new(v.x, v.z, -v.y) } else { v };

@@ -86,12 +86,12 @@ impl ParticleFrame {
         size_of_val(self.particles.as_slice()) as u64
     }
 
-    /// Interpolates between this frame and the next at `share`, 0 to 1, and calls `each` with every particle and its
+    /// Interpolates between this frame and the next at `fraction`, 0 to 1, and calls `each` with every particle and its
     /// weight, 0 to 1. A particle in both frames is interpolated and has weight 1. A particle in one frame only keeps
-    /// its place; its weight fades out or in. If the frames have no ids or provide different attributes, the particles
+    /// its position; its weight fades out or in. If the frames have no ids or provide different attributes, the particles
     /// are those of this frame.
-    pub fn interpolate(&self, next: Option<&Self>, share: f32, mut each: impl FnMut(&FileParticle, f32)) {
-        let next = next.filter(|next| share > 0.0 && self.provided.id && next.provided == self.provided);
+    pub fn interpolate(&self, next: Option<&Self>, fraction: f32, mut each: impl FnMut(&FileParticle, f32)) {
+        let next = next.filter(|next| fraction > 0.0 && self.provided.id && next.provided == self.provided);
         let Some(next) = next else {
             return self.particles.iter().for_each(|particle| each(particle, 1.0));
         };
@@ -100,16 +100,16 @@ impl ParticleFrame {
         loop {
             match (ours.peek(), theirs.peek()) {
                 (Some(one), Some(other)) if one.id == other.id => {
-                    each(&one.lerp(other, share), 1.0);
+                    each(&one.lerp(other, fraction), 1.0);
                     ours.next();
                     theirs.next();
                 }
                 (Some(one), other) if other.is_none_or(|other| one.id < other.id) => {
-                    each(one, 1.0 - share);
+                    each(one, 1.0 - fraction);
                     ours.next();
                 }
                 (_, Some(other)) => {
-                    each(other, share);
+                    each(other, fraction);
                     theirs.next();
                 }
                 (_, None) => return,
@@ -119,19 +119,19 @@ impl ParticleFrame {
 }
 
 impl FileParticle {
-    fn lerp(&self, other: &Self, share: f32) -> Self {
-        let mix = |from: f32, to: f32| from + (to - from) * share;
+    fn lerp(&self, other: &Self, fraction: f32) -> Self {
+        let mix = |from: f32, to: f32| from + (to - from) * fraction;
         // Rotates by the smaller angle: a simulation may wrap rotations at a full turn.
         let turn = (other.rotation - self.rotation + std::f32::consts::PI).rem_euclid(std::f32::consts::TAU);
         Self {
             id: self.id,
-            position: self.position.lerp(other.position, share),
+            position: self.position.lerp(other.position, fraction),
             radius: mix(self.radius, other.radius),
-            rotation: self.rotation + (turn - std::f32::consts::PI) * share,
+            rotation: self.rotation + (turn - std::f32::consts::PI) * fraction,
             amount: mix(self.amount, other.amount),
             age: mix(self.age, other.age),
-            velocity: self.velocity.lerp(other.velocity, share),
-            color: self.color.lerp(other.color, share),
+            velocity: self.velocity.lerp(other.velocity, fraction),
+            color: self.color.lerp(other.color, fraction),
             heat: mix(self.heat, other.heat),
         }
     }

@@ -40,11 +40,11 @@ pub struct FramePair<'a> {
     /// The next frame, if there is one.
     pub after: Option<&'a ParticleFrame>,
     /// Fraction of the interval to the next frame that has passed, 0 to 1.
-    pub share: f32,
+    pub fraction: f32,
 }
 
 impl ParticleFrames {
-    /// Loads one file, or a sequence if the file name contains `#` in place of the frame number's digits.
+    /// Loads one file, or a sequence if the file name contains `#` instead of the frame number's digits.
     ///
     /// # Errors
     /// [`AssetError::Io`]; [`AssetError::Text`] with line and column for CSV, ASCII PLY and PLY headers; [`AssetError::Image`] for
@@ -112,10 +112,10 @@ impl ParticleFrames {
         let next = self.frames.partition_point(|(at, _)| f64::from(*at) <= number);
         let (start, before) = self.frames.get(next.checked_sub(1)?)?;
         let Some((end, after)) = self.frames.get(next) else {
-            return Some(FramePair { before, after: None, share: 0.0 });
+            return Some(FramePair { before, after: None, fraction: 0.0 });
         };
-        let share = ((number - f64::from(*start)) / f64::from(end - start)) as f32;
-        Some(FramePair { before, after: Some(after), share })
+        let fraction = ((number - f64::from(*start)) / f64::from(end - start)) as f32;
+        Some(FramePair { before, after: Some(after), fraction })
     }
 
     /// True if both share the same memory.

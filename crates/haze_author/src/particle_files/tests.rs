@@ -10,9 +10,9 @@ fn frame(text: &str) -> ParticleFrame {
     parse(Path::new("a.csv"), text.as_bytes(), 100).unwrap()
 }
 
-fn interpolate(first: &str, second: &str, share: f32) -> Vec<(i64, f32, f32)> {
+fn interpolate(first: &str, second: &str, fraction: f32) -> Vec<(i64, f32, f32)> {
     let mut found = Vec::new();
-    frame(first).interpolate(Some(&frame(second)), share, |particle, weight| {
+    frame(first).interpolate(Some(&frame(second)), fraction, |particle, weight| {
         found.push((particle.id, particle.position.x, weight));
     });
     found
@@ -48,7 +48,7 @@ fn frames_are_placed_in_time_by_their_numbers() {
     let frames = ParticleFrames::load(&folder.path().join("s_###.csv"), LIMITS).unwrap();
     assert_eq!((frames.frame_count(), frames.max_particles(), frames.bytes()), (6, 3, 6 * 64));
     let at = |frame| {
-        frames.frames_around(frame).map(|found| (found.before.particles().len(), found.after.is_some(), found.share))
+        frames.frames_around(frame).map(|found| (found.before.particles().len(), found.after.is_some(), found.fraction))
     };
     assert_eq!(at(-0.1), None);
     assert_eq!(at(0.0), Some((1, true, 0.0)));

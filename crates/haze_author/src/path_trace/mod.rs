@@ -80,14 +80,14 @@ impl PathTrace {
                 }
             });
         }
-        let share = 1.0 / self.samples.max(1) as f32;
+        let fraction = 1.0 / self.samples.max(1) as f32;
         let of = |index: usize, scale: f32| {
             let texels = sums.texels.iter().skip(index).step_by(count + 1).map(|&sum| sum * scale);
             Image { size: UVec2::splat(self.size), texels: texels.collect() }
         };
-        let coverage = of(count, share);
+        let coverage = of(count, fraction);
         let coverage = Image { size: coverage.size, texels: coverage.texels.iter().map(|sum: &Vec3| sum.x).collect() };
-        let light = (0..count).map(|light| of(light, std::f32::consts::PI * share)).collect();
+        let light = (0..count).map(|light| of(light, std::f32::consts::PI * fraction)).collect();
         Ok(PathTraceResult { light, coverage })
     }
 }

@@ -58,8 +58,8 @@ impl<'a> Tracer<'a> {
         let Scratch { column, towards } = scratch;
         let key = UVec3::new(pixel.at.x, pixel.at.y, pixel.seed.wrapping_mul(0x9e37_79b9).wrapping_add(index));
         let mut random = Random::new(key);
-        let place = pixel.at.as_vec2() + Vec2::new(random.unit(), random.unit());
-        let front = (place * (2.0 / pixel.size as f32) - 1.0) * Vec2::new(1.0, -1.0);
+        let position = pixel.at.as_vec2() + Vec2::new(random.unit(), random.unit());
+        let front = (position * (2.0 / pixel.size as f32) - 1.0) * Vec2::new(1.0, -1.0);
         let total_depth = self.integrate_column(front, column);
         if total_depth <= 0.0 {
             return 0.0;
@@ -95,8 +95,8 @@ impl<'a> Tracer<'a> {
         let step = 2.0 / column.len() as f32;
         let mut sum = 0.0;
         for (index, depth) in column.iter_mut().enumerate() {
-            let place = front.extend(1.0 - (index as f32 + 0.5) * step);
-            sum += self.volume.density(place) * self.medium.density * step;
+            let position = front.extend(1.0 - (index as f32 + 0.5) * step);
+            sum += self.volume.density(position) * self.medium.density * step;
             *depth = sum;
         }
         sum
@@ -112,9 +112,9 @@ impl<'a> Tracer<'a> {
             if distance >= most {
                 return None;
             }
-            let place = p + direction * distance;
-            if random.unit() * self.majorant < self.volume.density(place) * self.medium.density {
-                return Some(place);
+            let position = p + direction * distance;
+            if random.unit() * self.majorant < self.volume.density(position) * self.medium.density {
+                return Some(position);
             }
         }
     }

@@ -14,11 +14,11 @@ pub(super) fn phase_function(cos: f32, g: f32) -> f32 {
 
 /// Samples a scattered direction for light that travels along `direction`, with the phase function's probability.
 pub(super) fn sample_scattered_direction(direction: Vec3, g: f32, random: &mut Random) -> Vec3 {
-    let share = random.unit();
+    let fraction = random.unit();
     let cos = if g.abs() < 1.0e-3 {
-        1.0 - 2.0 * share
+        1.0 - 2.0 * fraction
     } else {
-        let s = (1.0 - g * g) / (1.0 - g + 2.0 * g * share);
+        let s = (1.0 - g * g) / (1.0 - g + 2.0 * g * fraction);
         ((1.0 + g * g - s * s) / (2.0 * g)).clamp(-1.0, 1.0)
     };
     let (x, y) = direction.any_orthonormal_pair();

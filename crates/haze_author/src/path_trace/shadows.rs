@@ -29,8 +29,8 @@ impl ShadowVolume {
                         let distance = exit_distance(from, light);
                         let steps = (distance / step).ceil().max(1.0);
                         let step = distance / steps;
-                        let place = |index: u32| from + light * ((index as f32 + 0.5) * step);
-                        *depth = (0..steps as u32).map(|index| volume.density(place(index))).sum::<f32>() * step;
+                        let position = |index: u32| from + light * ((index as f32 + 0.5) * step);
+                        *depth = (0..steps as u32).map(|index| volume.density(position(index))).sum::<f32>() * step;
                     }
                 }
             }

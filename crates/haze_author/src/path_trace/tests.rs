@@ -64,9 +64,9 @@ fn smoke_without_absorption_conserves_light() {
     let coverage: f32 = traced.coverage.texels.iter().sum();
     // A uniform radiance of 1 equals 100 lights of irradiance 4π / 100. The traced lights have irradiance π each, so
     // scale by 4 / 100.
-    let light: f32 = traced.light.iter().flat_map(|picture| &picture.texels).map(|light| light.y).sum();
-    let share = light * 4.0 / 100.0 / coverage;
-    assert!((share - 1.0).abs() < 0.02, "{share}");
+    let light: f32 = traced.light.iter().flat_map(|image| &image.texels).map(|light| light.y).sum();
+    let fraction = light * 4.0 / 100.0 / coverage;
+    assert!((fraction - 1.0).abs() < 0.02, "{fraction}");
 }
 
 #[test]

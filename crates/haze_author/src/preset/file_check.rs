@@ -13,11 +13,11 @@ use crate::particle_files::check_particle_files;
 /// their role, the attributes that columns of particles are read as, and parts of a scene file that are not shown. Files
 /// are searched for in `folders`; `path`, the preset's file, is only named in errors.
 pub fn check_files(preset: &Preset, path: &Path, folders: &AssetFolders) -> (Vec<AssetError>, Vec<String>) {
-    let mut pictures = ImageCache::new(ImageSource::Folders(folders.clone()));
+    let mut images = ImageCache::new(ImageSource::Folders(folders.clone()));
     let mut errors = Vec::new();
     let mut warnings = Vec::new();
     for (index, system) in preset.systems.iter().enumerate() {
-        let found = match system.material.load_with_cache(&mut pictures) {
+        let found = match system.material.load_with_cache(&mut images) {
             Ok(material) => {
                 let fits = material.info().validate(index, &system.settings);
                 errors.extend(fits.err().map(|error| AssetError::JsonField { path: path.into(), error }));

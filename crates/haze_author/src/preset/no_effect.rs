@@ -60,7 +60,7 @@ fn is_lit_by_sky(environment: &Environment, _: UVec2) -> bool {
 }
 
 /// Returns the reason why a field has no effect with the other values as they are; `None` if it has an effect. `path` is
-/// formatted as by [`field_path`](haze_core::settings::field_path); `size` is the picture's, in pixels.
+/// formatted as by [`field_path`](haze_core::settings::field_path); `size` is the image's, in pixels.
 pub fn no_effect_reason(preset: &Preset, path: &str, size: UVec2) -> Option<&'static str> {
     let item = |list: &str| {
         let (index, field) = path.strip_prefix(list)?.strip_prefix('[')?.split_once("].")?;

@@ -124,7 +124,7 @@ fn shows_normals(ramp: &Ramp) -> bool {
     };
     let (sum, blue) = texels().fold((Vec2::ZERO, 0.0), |(sum, blue), light| (sum + light.xy(), blue + light.z));
     let mean = sum / blue;
-    // Red and green as shares of blue, so that half-transparent texels give the same. Blue is the weight.
+    // Red and green as fractions of blue, so that half-transparent texels give the same. Blue is the weight.
     let mut squares = Vec2::ZERO;
     let mut product = 0.0;
     for light in texels() {
@@ -148,8 +148,8 @@ mod tests {
     fn images_in_the_wrong_role_are_reported() {
         let folder = tempfile::tempdir().unwrap();
         let save = |name: &str, size: (u32, u32), color: fn(u32, u32) -> [u8; 3]| {
-            let picture = RgbImage::from_fn(size.0, size.1, |x, y| Rgb(color(x, y)));
-            picture.save(folder.path().join(name)).unwrap();
+            let image = RgbImage::from_fn(size.0, size.1, |x, y| Rgb(color(x, y)));
+            image.save(folder.path().join(name)).unwrap();
         };
         save("across.png", (64, 4), |x, _| [4 * x as u8; 3]);
         save("down.png", (4, 64), |_, y| [4 * y as u8; 3]);

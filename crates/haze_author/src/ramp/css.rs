@@ -145,14 +145,14 @@ fn placed(stops: &[Stop]) -> Vec<SourcePoint> {
         *position = most;
     }
     let known: Vec<_> = positions.iter().enumerate().filter_map(|(index, at)| Some((index, (*at)?))).collect();
-    let place = |index: usize| {
+    let position = |index: usize| {
         let next = known.partition_point(|(known, _)| *known < index).min(known.len() - 1);
         let (to, end) = known[next];
         let (from, start) = known[next.saturating_sub(1)];
-        let share = if to > from { (index - from) as f32 / (to - from) as f32 } else { 1.0 };
-        start + (end - start) * share
+        let fraction = if to > from { (index - from) as f32 / (to - from) as f32 } else { 1.0 };
+        start + (end - start) * fraction
     };
-    let point = |(index, stop): (usize, &Stop)| SourcePoint { at: place(index), code: stop.color };
+    let point = |(index, stop): (usize, &Stop)| SourcePoint { at: position(index), code: stop.color };
     stops.iter().enumerate().map(point).collect()
 }
 

@@ -18,7 +18,7 @@ pub const DEFAULT_MAX_ERROR: f32 = 1.5;
 pub const MAX_ERROR_RANGE: RangeInclusive<f32> = 1.0..=64.0;
 
 /// Standard deviations of the noise of a painted image, steps of 255. Rounding and dithering are below; above, the texture
-/// is a part of the picture.
+/// is a part of the image.
 const PAINTED_NOISE: RangeInclusive<f32> = 0.9..=4.0;
 
 /// Texels over which the difference of two rows is averaged, to tell noise from a slope.
@@ -48,11 +48,11 @@ pub struct RampFit {
 ///
 /// # Errors
 /// [`FieldError`] if `max_error` is out of range, the image is empty, or it needs more than 50 000 stops.
-pub fn fit_image(picture: &DynamicImage, max_error: Option<f32>) -> Result<RampFit, FieldError> {
+pub fn fit_image(image: &DynamicImage, max_error: Option<f32>) -> Result<RampFit, FieldError> {
     validate_max_error(max_error)?;
-    let pixels = picture.to_rgb16();
+    let pixels = image.to_rgb16();
     if pixels.is_empty() {
-        return Err(FieldError::from_problem("picture", "has no pixels", "at least one pixel"));
+        return Err(FieldError::from_problem("image", "has no pixels", "at least one pixel"));
     }
     let code = |channel: u16| f32::from(channel) / 257.0;
     let mut rows: Vec<Vec<Vec3>> =
@@ -84,8 +84,8 @@ pub fn fit_image(picture: &DynamicImage, max_error: Option<f32>) -> Result<RampF
         RampRecipe { width, height, blend, rows: fit_rows(texels, blend, curve, max_error), ..RampRecipe::default() };
     let count = recipe.rows.iter().map(|row| row.stops.len()).sum::<usize>();
     if count > MAX_STOPS {
-        let expected = format!("at most {MAX_STOPS}: a picture of gradients, or a larger error");
-        return Err(FieldError::from_problem("stops", format!("the picture needs {count}"), expected));
+        let expected = format!("at most {MAX_STOPS}: an image of gradients, or a larger error");
+        return Err(FieldError::from_problem("stops", format!("the image needs {count}"), expected));
     }
     let baked = recipe.bake()?.into_rgb16();
     let baked: Vec<Vec3> = baked.pixels().map(|pixel| Vec3::from(pixel.0.map(code))).collect();
@@ -246,17 +246,17 @@ fn choose_keys(
     difference: impl Fn(usize, usize) -> f32,
     mut errors: impl FnMut(&[Key], Range<usize>) -> Vec<f32>,
 ) -> Vec<Key> {
-    let place = |index: f32| (index / (count - 1) as f32 * 1.0e6).round() / 1.0e6;
+    let position = |index: f32| (index / (count - 1) as f32 * 1.0e6).round() / 1.0e6;
     let mut chosen = Vec::new();
     let mut start = 0;
     for end in (1..=count).filter(|&end| end == count || is_edge(end, count, &difference)) {
         let middle = usize::midpoint(start, end);
-        let at = if start == 0 { 0.0 } else { place(start as f32 - 0.5) };
+        let at = if start == 0 { 0.0 } else { position(start as f32 - 0.5) };
         if (start..end).all(|index| difference(index, middle) <= max_error - 0.5) {
             chosen.push(Key { index: middle, at, curve: Curve::Constant });
         } else {
-            let until = if end == count { 1.0 } else { place(end as f32 - 0.5) };
-            let key = |index: usize| Key { index, at: place(index as f32), curve };
+            let until = if end == count { 1.0 } else { position(end as f32 - 0.5) };
+            let key = |index: usize| Key { index, at: position(index as f32), curve };
             let mut keys = vec![Key { index: start, at, curve }, Key { index: end - 1, at: until, curve }];
             refine(&mut keys, start..end, max_error, key, &mut errors);
             prune(&mut keys, start..end, max_error, &mut errors);

@@ -91,17 +91,17 @@ fn segments(text: &str) -> Result<Vec<Segment>, GradientParseError> {
 impl Segment {
     /// Returns the sRGB code at a position in the segment.
     fn code(&self, at: f32) -> Vec3 {
-        let share = |from: f32, to: f32| if to > from { ((at - from) / (to - from)).clamp(0.0, 1.0) } else { 1.0 };
+        let fraction = |from: f32, to: f32| if to > from { ((at - from) / (to - from)).clamp(0.0, 1.0) } else { 1.0 };
         let half = if at < self.middle {
-            share(self.left, self.middle) / 2.0
+            fraction(self.left, self.middle) / 2.0
         } else {
-            0.5 + share(self.middle, self.right) / 2.0
+            0.5 + fraction(self.middle, self.right) / 2.0
         };
         let part = match self.blending {
             1 => {
                 let middle =
                     ((self.middle - self.left) / (self.right - self.left).max(1.0e-9)).clamp(1.0e-6, 1.0 - 1.0e-6);
-                share(self.left, self.right).powf(0.5_f32.ln() / middle.ln())
+                fraction(self.left, self.right).powf(0.5_f32.ln() / middle.ln())
             }
             2 => (1.0 - (PI * half).cos()) / 2.0,
             3 => (1.0 - (half - 1.0) * (half - 1.0)).max(0.0).sqrt(),

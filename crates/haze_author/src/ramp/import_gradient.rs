@@ -138,7 +138,7 @@ fn blender(text: &str) -> Result<SourceGradient, GradientParseError> {
                 }
             }
             ["color_mode", ..] => {
-                let expected = "RGB: set it in Blender, or import a picture of the ramp";
+                let expected = "RGB: set it in Blender, or import an image of the ramp";
                 return Err(refuse(format!("the color mode is not RGB; expected {expected}")));
             }
             _ => {
@@ -272,7 +272,7 @@ mod tests {
         noise.save(&path).unwrap();
         let error = import_gradient(&path, Some(1.0), None).unwrap_err().to_string();
         assert!(
-            error.contains("noise.png: stops: the picture needs 6") && error.contains("expected at most 50000"),
+            error.contains("noise.png: stops: the image needs 6") && error.contains("expected at most 50000"),
             "{error}"
         );
     }

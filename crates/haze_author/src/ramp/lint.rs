@@ -24,10 +24,10 @@ pub const BANDING: &str = "banding";
 /// - `step`: a jump of luminance along either axis, except in diffuse and coverage ramps: toon shading needs steps.
 /// - `seam`: a first or last texel that does not continue the gradient, such as a frame or a scaling artefact.
 /// - `ends`: a specular ramp that is not black at amount 0 or at distance 1.
-/// - `round`: a specular ramp whose brightest column is not distance 0, like a picture of a round glow.
+/// - `round`: a specular ramp whose brightest column is not distance 0, like an image of a round glow.
 /// - `turned`: a gradient from top to bottom instead of left to right.
-pub fn lint_ramp(picture: &DynamicImage, role: Option<RampRole>) -> Vec<Finding> {
-    let pixels = picture.to_rgb16();
+pub fn lint_ramp(image: &DynamicImage, role: Option<RampRole>) -> Vec<Finding> {
+    let pixels = image.to_rgb16();
     let (width, height) = pixels.dimensions();
     let mut findings = Vec::new();
     let mut find =
@@ -79,7 +79,7 @@ pub fn lint_ramp(picture: &DynamicImage, role: Option<RampRole>) -> Vec<Finding>
                 name: "round",
                 description: format!(
                     "brightness {lightest} of 255 at distance 0, the first column, but {most} farther out; expected the first \
-                     column to be the brightest: the axes are distance and amount, not a picture of a glow"
+                     column to be the brightest: the axes are distance and amount, not an image of a glow"
                 ),
                 is_warning: false,
             });
@@ -154,24 +154,24 @@ mod tests {
     use std::collections::BTreeSet;
     use std::path::Path;
 
-    fn names(picture: &DynamicImage, role: Option<RampRole>) -> Vec<&'static str> {
-        lint_ramp(picture, role).into_iter().map(|finding| finding.name).collect()
+    fn names(image: &DynamicImage, role: Option<RampRole>) -> Vec<&'static str> {
+        lint_ramp(image, role).into_iter().map(|finding| finding.name).collect()
     }
 
     #[test]
     fn built_in_ramps_and_templates_have_no_findings() {
         for ramp in builtin::RAMPS {
-            let picture = decode_png(Path::new(ramp.name), ramp.bytes).unwrap();
+            let image = decode_png(Path::new(ramp.name), ramp.bytes).unwrap();
             let role = RampRole::from_name(ramp.name);
             assert!(role.is_some());
-            assert_eq!(lint_ramp(&picture, role), [], "{}", ramp.name);
+            assert_eq!(lint_ramp(&image, role), [], "{}", ramp.name);
         }
         let mut seen = BTreeSet::new();
         for template in TEMPLATES {
             assert!(seen.insert(template.name));
             for bits in [8, 16] {
-                let picture = RampRecipe { bits, ..template.recipe() }.bake().unwrap();
-                assert_eq!(lint_ramp(&picture, Some(template.role)), [], "{} {bits}", template.name);
+                let image = RampRecipe { bits, ..template.recipe() }.bake().unwrap();
+                assert_eq!(lint_ramp(&image, Some(template.role)), [], "{} {bits}", template.name);
             }
         }
     }

@@ -99,8 +99,8 @@ impl MotifRecipe {
         let last = (self.size - 1) as f32;
         let light = |light: &MotifLight| (light.direction.normalize_or(Vec3::Z), light.color.linear(), light.wrap);
         let lights: Vec<_> = self.lights.iter().map(light).collect();
-        let mut picture = Image::new(UVec2::splat(self.size), [0; 3]);
-        picture.for_each(|at, texel| {
+        let mut image = Image::new(UVec2::splat(self.size), [0; 3]);
+        image.for_each(|at, texel| {
             let normal = motif_normal(Vec2::new(at.x as f32 / last * 2.0 - 1.0, 1.0 - at.y as f32 / last * 2.0));
             let lit = lights.iter().map(|&(direction, color, wrap)| {
                 let amount = saturate((normal.dot(direction) + wrap) / (1.0 + wrap));
@@ -108,7 +108,7 @@ impl MotifRecipe {
             });
             *texel = srgb16_from_linear(self.ambient.linear() + lit.sum::<Vec3>());
         });
-        Ok(image_of(picture))
+        Ok(image_of(image))
     }
 }
 

@@ -1,4 +1,4 @@
-//! Painting on a ramp: colors near a place are multiplied.
+//! Painting on a ramp: colors near a position are multiplied.
 
 use glam::{Vec2, Vec3};
 use haze_core::error::FieldError;
@@ -15,30 +15,30 @@ const NEAR: f32 = 0.06;
 const LIFT: f32 = 0.004;
 
 impl RampRecipe {
-    /// Recipe whose colors near a place are multiplied by a linear color, and end at white. Stops further away change less.
+    /// Recipe whose colors near a position are multiplied by a linear color, and end at white. Stops further away change less.
     /// A stop is added where none is near. `at`: 0 to 1 on both axes.
     ///
     /// # Errors
     /// As [`RampRecipe::validate`].
     pub fn painted(&self, at: Vec2, factor: Vec3) -> Result<Self, FieldError> {
         let mut recipe = self.clone();
-        let place = self.gradient()?.place(at);
+        let position = self.gradient()?.place(at);
         let distance = |row: &RampRow| (row.at - at.y).abs();
         let nearest = self.rows.iter().map(distance).fold(f32::INFINITY, f32::min);
         for row in &mut recipe.rows {
-            // The nearest row changes as if it were at the place.
+            // The nearest row changes as if it were at the position.
             let across = weight(distance(row) - nearest);
-            if across > 0.5 && row.stops.iter().all(|stop| (stop.at - place).abs() > NEAR) {
-                let color = color_of(self, row, place)?;
+            if across > 0.5 && row.stops.iter().all(|stop| (stop.at - position).abs() > NEAR) {
+                let color = color_of(self, row, position)?;
                 row.stops.sort_by(|a, b| a.at.total_cmp(&b.at));
-                add_stop(&mut row.stops, place, color);
+                add_stop(&mut row.stops, position, color);
             }
             for stop in &mut row.stops {
-                let share = across * weight(stop.at - place);
+                let fraction = across * weight(stop.at - position);
                 // By powers, so that a stroke back undoes one.
-                let light = (stop.color.linear() + LIFT) * factor.powf(share) - LIFT;
+                let light = (stop.color.linear() + LIFT) * factor.powf(fraction) - LIFT;
                 let painted = HexColor::from_srgb(light.clamp(Vec3::ZERO, Vec3::ONE).map(srgb_from_linear));
-                stop.color = if share < 0.01 { stop.color } else { painted };
+                stop.color = if fraction < 0.01 { stop.color } else { painted };
             }
         }
         Ok(recipe)

@@ -180,11 +180,11 @@ impl RampRecipe {
         let gradient = self.gradient()?;
         let size = UVec2::new(self.width, self.height);
         let last = (size - 1).max(UVec2::ONE).as_vec2();
-        let mut picture = Image::new(size, [0; 3]);
-        picture.for_each(|at, texel| {
+        let mut image = Image::new(size, [0; 3]);
+        image.for_each(|at, texel| {
             *texel = srgb16_from_linear(gradient.sample(at.x as f32 / last.x, (size.y - 1 - at.y) as f32 / last.y));
         });
-        Ok(if self.bits == 8 { dithered(&picture) } else { image_of(picture) })
+        Ok(if self.bits == 8 { dithered(&image) } else { image_of(image) })
     }
 }
 
@@ -215,30 +215,30 @@ const BAKED_STEP: u16 = 8;
 
 /// Converts sRGB texels to an image of 16 bits per channel, rounded to [`BAKED_STEP`]. Colors that are exact in
 /// 8 bits stay unchanged.
-pub(super) fn image_of(picture: Image<[u16; 3]>) -> DynamicImage {
+pub(super) fn image_of(image: Image<[u16; 3]>) -> DynamicImage {
     let rounded = |channel: u16| match channel % 257 {
         0 => channel,
         _ => channel.saturating_add(BAKED_STEP / 2) / BAKED_STEP * BAKED_STEP,
     };
-    let texels = picture.texels.into_iter().flatten().map(rounded).collect();
+    let texels = image.texels.into_iter().flatten().map(rounded).collect();
     // Never the default: there is one texel per pixel.
-    ImageBuffer::from_raw(picture.size.x, picture.size.y, texels)
+    ImageBuffer::from_raw(image.size.x, image.size.y, texels)
         .map_or_else(DynamicImage::default, DynamicImage::ImageRgb16)
 }
 
 /// Converts sRGB texels to an image of 8 bits per channel with ordered dithering, so that gradients show no bands.
-fn dithered(picture: &Image<[u16; 3]>) -> DynamicImage {
+fn dithered(image: &Image<[u16; 3]>) -> DynamicImage {
     let dither = |(index, texel): (u32, &[u16; 3])| {
         // R2 sequence: multiples of the inverse plastic number and of its square, in units of 2^-32. Thresholds are
         // evenly distributed along any line. (Roberts, "The unreasonable effectiveness of quasirandom sequences", 2018)
-        let x = index % picture.size.x;
-        let y = index / picture.size.x;
+        let x = index % image.size.x;
+        let y = index / image.size.x;
         let threshold = x.wrapping_mul(3_242_174_889).wrapping_add(y.wrapping_mul(2_447_445_414)) >> 16;
         // Colors that are exact in 8 bits stay unchanged.
         texel.map(|channel| ((u32::from(channel) * 255 + threshold.min(65534)) / 65535) as u8)
     };
-    let texels: Vec<_> = (0..).zip(&picture.texels).flat_map(dither).collect();
-    ImageBuffer::from_raw(picture.size.x, picture.size.y, texels)
+    let texels: Vec<_> = (0..).zip(&image.texels).flat_map(dither).collect();
+    ImageBuffer::from_raw(image.size.x, image.size.y, texels)
         .map_or_else(DynamicImage::default, DynamicImage::ImageRgb8)
 }
 

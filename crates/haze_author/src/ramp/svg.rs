@@ -21,7 +21,7 @@ pub fn read(text: &str, name: Option<&str>) -> Result<NotedGradient, GradientPar
     })?;
     let line_of = |node: &Node| document.text_pos_at(node.range().start).row as usize;
     let is_gradient = |node: &Node| ["linearGradient", "radialGradient"].contains(&node.tag_name().name());
-    // A gradient that is used has its own place and the stops of another one.
+    // A gradient that is used has its own position and the stops of another one.
     let gradients: Vec<_> = document.descendants().filter(|node| is_gradient(node) && has_stops(node)).collect();
     if gradients.is_empty() {
         let reason = "no gradient; expected a linearGradient or radialGradient with stops";
@@ -141,7 +141,7 @@ fn without_comments(text: &str) -> String {
 }
 
 fn point(stop: &Node) -> Result<SourcePoint, String> {
-    let at = share(stop.attribute("offset").unwrap_or("0"))
+    let at = fraction(stop.attribute("offset").unwrap_or("0"))
         .ok_or("a stop without a valid offset; expected 0 to 1, or percent")?;
     if property(stop, "stop-color").is_none() && stop.attribute("class").is_some() {
         let expected = "stop-color in an attribute or in style: export with presentation attributes";
@@ -150,13 +150,13 @@ fn point(stop: &Node) -> Result<SourcePoint, String> {
     let color = property(stop, "stop-color").unwrap_or("black");
     let parsed = csscolorparser::parse(color)
         .map_err(|_| format!("stop-color {} is no color; expected one of CSS, as #402010", one_line(color)))?;
-    let opacity = share(property(stop, "stop-opacity").unwrap_or("1"))
+    let opacity = fraction(property(stop, "stop-opacity").unwrap_or("1"))
         .ok_or("a stop without a valid stop-opacity; expected 0 to 1, or percent")?;
     Ok(SourcePoint { at, code: Vec4::new(parsed.r, parsed.g, parsed.b, parsed.a * opacity) })
 }
 
 /// Reads 0 to 1, or percent; clamped.
-fn share(text: &str) -> Option<f32> {
+fn fraction(text: &str) -> Option<f32> {
     let text = text.trim();
     let (number, unit) = match text.strip_suffix('%') {
         Some(percent) => (percent, 100.0),

@@ -119,7 +119,7 @@ impl Simulation {
     ) -> Result<BakedSixWay, E> {
         let sheet = self.recipe.sheet;
         let frame = |frame: u32| {
-            let mut shape = self.bake_frame(frame).picture;
+            let mut shape = self.bake_frame(frame).image;
             sheet.quantise(&mut shape);
             (self.volume(frame, (sheet.size / 2).max(8)).density, shape)
         };

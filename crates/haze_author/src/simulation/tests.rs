@@ -123,7 +123,7 @@ fn every_machine_simulates_the_same_bytes() {
     let found = [small(), fire].map(|recipe| {
         let BakedSimulation { sprite, heat } = run(&recipe);
         let heat = heat.map(image::ImageBuffer::into_raw).unwrap_or_default();
-        hash(sprite.picture.into_raw().into_iter().chain(sprite.detail.into_raw()).chain(heat))
+        hash(sprite.image.into_raw().into_iter().chain(sprite.detail.into_raw()).chain(heat))
     });
     assert_eq!(found, EXPECTED, "{found:#x?}");
 }
@@ -202,7 +202,7 @@ fn frames_are_clear_at_their_borders_and_motion_predicts_the_next() {
     let BakedSimulation { sprite: baked, heat } = run(&recipe);
     assert!(heat.is_none());
     // Refuses frames that are not clear at the border.
-    let sprite = Sprite::from_image(Path::new("small.png"), &baked.picture, recipe.sheet.layout()).unwrap();
+    let sprite = Sprite::from_image(Path::new("small.png"), &baked.image, recipe.sheet.layout()).unwrap();
     let still = RgbaImage::from_pixel(baked.detail.width(), baked.detail.height(), image::Rgba([128; 4]));
     let [moved, still] = [&baked.detail, &still]
         .map(|detail| (0..3).map(|frame| prediction_error(&sprite, detail, recipe.sheet.columns, frame)).sum::<f32>());

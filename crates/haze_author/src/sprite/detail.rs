@@ -26,9 +26,9 @@ pub(crate) fn detail_size(sprite_size: u32) -> u32 {
 /// [`optical_flow`] returns it.
 pub fn bake_detail_frame(sprite: &Sprite, frame: u32, offset: &Image<f32>, motion: &Image<Vec2>) -> Image<Rgba<u8>> {
     let size = detail_size(sprite.size());
-    let mut picture = Image::new(UVec2::splat(size), Rgba([128, 128, 128, 0]));
+    let mut image = Image::new(UVec2::splat(size), Rgba([128, 128, 128, 0]));
     let scale = sprite.size() / size;
-    picture.for_each(|at, texel| {
+    image.for_each(|at, texel| {
         // Mean offset of the covered texels, weighted by amount.
         let mut sum = 0.0;
         let mut weight = 0.0;
@@ -46,7 +46,7 @@ pub fn bake_detail_frame(sprite: &Sprite, frame: u32, offset: &Image<f32>, motio
         let offset = if weight > 0.0 { sum / weight } else { 0.0 };
         *texel = Rgba([signed(offset), signed(motion.x), signed(motion.y), (amount * 255.0).round() as u8]);
     });
-    picture
+    image
 }
 
 /// Computes each texel's motion from `frame` to the next, in sides of the sprite, y down. Optical flow by least squares
@@ -83,12 +83,12 @@ const STIFFNESS: f32 = 0.02;
 
 /// Returns the features that are matched between frames: amount, and normal xy times amount.
 fn features(sprite: &Sprite, frame: u32, level: u32) -> Image<Vec3> {
-    let mut picture = Image::new(UVec2::splat(sprite.level_size(level)), Vec3::ZERO);
-    picture.for_each(|at, feature| {
+    let mut image = Image::new(UVec2::splat(sprite.level_size(level)), Vec3::ZERO);
+    image.for_each(|at, feature| {
         let texel = sprite.texel(level, frame, at.x, at.y);
         *feature = Vec3::new(1.0, texel.x * 2.0 - 1.0, texel.y * 2.0 - 1.0) * texel.w;
     });
-    picture
+    image
 }
 
 /// Performs one least-squares step at every texel.
@@ -129,13 +129,13 @@ fn refine(from: &Image<Vec3>, to: &Image<Vec3>, flow: &Image<Vec2>) -> Image<Vec
     refined
 }
 
-fn bilinear<T>(picture: &Image<T>, at: Vec2) -> T
+fn bilinear<T>(image: &Image<T>, at: Vec2) -> T
 where
     T: Copy + Send + std::ops::Add<Output = T> + std::ops::Sub<Output = T> + std::ops::Mul<f32, Output = T>,
 {
     let base = at.floor();
     let f = at - base;
-    let load = |dx, dy| picture.load(base.as_ivec2() + IVec2::new(dx, dy));
+    let load = |dx, dy| image.load(base.as_ivec2() + IVec2::new(dx, dy));
     let top = load(0, 0) + (load(1, 0) - load(0, 0)) * f.x;
     let bottom = load(0, 1) + (load(1, 1) - load(0, 1)) * f.x;
     top + (bottom - top) * f.y

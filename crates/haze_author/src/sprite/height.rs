@@ -5,9 +5,9 @@ use glam::{IVec2, UVec2, Vec3};
 use haze_core::assets::image::Image;
 
 pub fn map_pixels(size: UVec2, value: impl Fn(UVec2) -> f32 + Sync) -> Image<f32> {
-    let mut picture = Image::new(size, 0.0);
-    picture.for_each(|at, gray| *gray = value(at));
-    picture
+    let mut image = Image::new(size, 0.0);
+    image.for_each(|at, gray| *gray = value(at));
+    image
 }
 
 /// Returns the unnormalised normal of a height map. A height of 1 equals a half side times `strength`.
@@ -38,9 +38,9 @@ pub fn dome_heights(amount: &Image<f32>) -> Image<f32> {
     height
 }
 
-fn box_blur(picture: &Image<f32>, step: IVec2, reach: i32) -> Image<f32> {
-    map_pixels(picture.size, |at| {
-        let sum: f32 = (-reach..=reach).map(|offset| picture.load(at.as_ivec2() + step * offset)).sum();
+fn box_blur(image: &Image<f32>, step: IVec2, reach: i32) -> Image<f32> {
+    map_pixels(image.size, |at| {
+        let sum: f32 = (-reach..=reach).map(|offset| image.load(at.as_ivec2() + step * offset)).sum();
         sum / (2 * reach + 1) as f32
     })
 }

@@ -53,7 +53,7 @@ impl ImportSource {
 #[derive(Clone, Debug)]
 pub struct ImportedSprite {
     /// rgb = normal / 2 + 1/2 (x right, y up, z towards the viewer), a = amount.
-    pub picture: RgbaImage,
+    pub image: RgbaImage,
     /// Six-way maps, if the source is a pair of light maps: see [`six_way`](super::six_way).
     pub six_way: Option<RgbaImage>,
     /// Detected direction of green in painted normals; `None` for other sources.
@@ -106,7 +106,7 @@ pub fn import_sprite(
     strength: f32,
 ) -> Result<ImportedSprite, AssetError> {
     let refuse = |reason: String| Err(AssetError::Image { path: path.into(), reason });
-    let [first, rest @ ..] = sheets else { return refuse("no picture; expected one".into()) };
+    let [first, rest @ ..] = sheets else { return refuse("no image; expected one".into()) };
     let second = rest.first();
     if rest.len() != usize::from(source.needs_two_images()) {
         return refuse(format!("{} sheets; expected {}", sheets.len(), 1 + u32::from(source.needs_two_images())));
@@ -115,17 +115,17 @@ pub fn import_sprite(
         let size = |sheet: &RgbaImage| format!("{}x{}", sheet.width(), sheet.height());
         return refuse(format!("the second sheet has {} pixels; expected {} as the first", size(second), size(first)));
     }
-    let mut picture = first.clone();
-    let has_alpha = picture.pixels().any(|texel| texel.0[3] != 255);
+    let mut image = first.clone();
+    let has_alpha = image.pixels().any(|texel| texel.0[3] != 255);
     if matches!(source, ImportSource::Alpha) && !has_alpha {
-        picture.pixels_mut().for_each(|texel| texel.0[3] = texel.0[0]);
+        image.pixels_mut().for_each(|texel| texel.0[3] = texel.0[0]);
     }
     let columns = layout.columns.max(1);
     let rows = layout.rows.max(1);
-    let size = UVec2::new(picture.width() / columns, picture.height() / rows);
-    let border = clear_borders(&mut picture, layout);
+    let size = UVec2::new(image.width() / columns, image.height() / rows);
+    let border = clear_borders(&mut image, layout);
     // Returns an error if the layout does not fit.
-    let sprite = Sprite::from_image(path, &picture, SpriteLayout { y_down: false, ..layout })?;
+    let sprite = Sprite::from_image(path, &image, SpriteLayout { y_down: false, ..layout })?;
     let mut found = None;
     let mut not_normals = None;
     match source {
@@ -134,7 +134,7 @@ pub fn import_sprite(
             found = y_direction(&sprite);
             let guess = found.is_some_and(|found| found.is_down && found.confidence >= MIN_CONFIDENCE);
             let turns = y_down.unwrap_or(guess);
-            for texel in picture.pixels_mut() {
+            for texel in image.pixels_mut() {
                 let normal = value(texel).truncate() * 2.0 - 1.0;
                 let normal = if turns { normal.with_y(-normal.y) } else { normal };
                 *texel = encode(normal, texel.0[3]);
@@ -143,14 +143,14 @@ pub fn import_sprite(
         ImportSource::Height | ImportSource::Alpha => {
             for frame in 0..columns * rows {
                 let origin = UVec2::new(frame % columns, frame / columns) * size;
-                let texel = |at: UVec2| value(picture.get_pixel(origin.x + at.x, origin.y + at.y));
+                let texel = |at: UVec2| value(image.get_pixel(origin.x + at.x, origin.y + at.y));
                 let height = match source {
                     ImportSource::Height => map_pixels(size, |at| texel(at).x),
                     _ => dome_heights(&map_pixels(size, |at| texel(at).w)),
                 };
                 for at in (0..size.element_product()).map(|index| UVec2::new(index % size.x, index / size.x)) {
                     let normal = normal_of(&height, at.as_ivec2(), strength);
-                    let out = picture.get_pixel_mut(origin.x + at.x, origin.y + at.y);
+                    let out = image.get_pixel_mut(origin.x + at.x, origin.y + at.y);
                     *out = encode(normal, out.0[3]);
                 }
             }
@@ -159,14 +159,14 @@ pub fn import_sprite(
     }
     let emission = second.and_then(|second| emission(first, second));
     let light = source.packing().zip(second);
-    let six_way = light.map(|(packing, second)| pack(&picture, second, packing));
+    let six_way = light.map(|(packing, second)| pack(&image, second, packing));
     if let Some((packing, second)) = light {
-        for (texel, other) in picture.pixels_mut().zip(second.pixels()) {
+        for (texel, other) in image.pixels_mut().zip(second.pixels()) {
             let SixWay { positive, negative } = packing.six_way(value(texel).truncate(), value(other).truncate());
             *texel = encode((positive - negative) * strength, texel.0[3]);
         }
     }
-    Ok(ImportedSprite { picture, six_way, y_direction: found, emission, not_normals, border })
+    Ok(ImportedSprite { image, six_way, y_direction: found, emission, not_normals, border })
 }
 
 /// Returns the largest alpha of the second light map, unless it is the amount, or the same in all texels.
@@ -211,9 +211,9 @@ mod tests {
     /// Imports sheets and returns the mean distance of the normals from those of the hemispheres.
     fn off(sheets: &[RgbaImage], source: ImportSource, y_down: Option<bool>, strength: f32) -> f32 {
         let imported = import_sprite(Path::new("a.png"), sheets, source, LAYOUT, y_down, strength).unwrap();
-        assert_eq!(lint_sprite(Path::new("a.png"), &imported.picture, LAYOUT).unwrap(), [], "{source:?}");
+        assert_eq!(lint_sprite(Path::new("a.png"), &imported.image, LAYOUT).unwrap(), [], "{source:?}");
         let wanted = balls(|normal, amount| (normal * 0.5 + 0.5).extend(amount).to_array());
-        let solid = wanted.pixels().zip(imported.picture.pixels()).filter(|(wanted, _)| wanted.0[3] > 200);
+        let solid = wanted.pixels().zip(imported.image.pixels()).filter(|(wanted, _)| wanted.0[3] > 200);
         let apart = |(a, b): (&Rgba<u8>, &Rgba<u8>)| {
             let normal = |texel| value(texel).truncate() * 2.0 - 1.0;
             normal(a).distance(normal(b))
@@ -234,10 +234,7 @@ mod tests {
         // An explicit `y_down` overrides the detection.
         let kept = import_sprite(Path::new(""), &sheet(-1.0), ImportSource::Normals, LAYOUT, Some(false), 1.0).unwrap();
         assert!(
-            kept.picture
-                .pixels()
-                .zip(sheet(-1.0)[0].pixels())
-                .all(|(a, b)| a.0[1].abs_diff(b.0[1]) <= 2 || a.0[3] == 0)
+            kept.image.pixels().zip(sheet(-1.0)[0].pixels()).all(|(a, b)| a.0[1].abs_diff(b.0[1]) <= 2 || a.0[3] == 0)
         );
     }
 

@@ -30,13 +30,13 @@ const LENGTHS: [f32; 2] = [0.85, 1.1];
 ///
 /// # Errors
 /// As [`Sprite::from_image`] if the layout does not fit.
-pub fn lint_sprite(path: &Path, picture: &RgbaImage, layout: SpriteLayout) -> Result<Vec<Finding>, AssetError> {
+pub fn lint_sprite(path: &Path, image: &RgbaImage, layout: SpriteLayout) -> Result<Vec<Finding>, AssetError> {
     let mut findings = Vec::new();
     let mut find = |name, description: String| findings.push(Finding { name, description, is_warning: false });
     // A border that is not clear is a finding, not an error: it is cleared so that the other checks can run.
-    let mut picture = picture.clone();
-    let border = clear_borders(&mut picture, layout);
-    let sprite = Sprite::from_image(path, &picture, layout)?;
+    let mut image = image.clone();
+    let border = clear_borders(&mut image, layout);
+    let sprite = Sprite::from_image(path, &image, layout)?;
     if let Some((frame, alpha)) = border {
         find(
             "border",
@@ -69,10 +69,10 @@ pub fn lint_sprite(path: &Path, picture: &RgbaImage, layout: SpriteLayout) -> Re
             format!("normals fade to {towards} with alpha; expected straight alpha, with unit normals up to the edge"),
         );
     } else if off(&[faint, solid].concat()) > MIN_FRACTION {
-        let share = (off(&lengths(MIN_AMOUNT, 2.0)) * 100.0).round();
+        let fraction = (off(&lengths(MIN_AMOUNT, 2.0)) * 100.0).round();
         find(
             "length",
-            format!("{share} % of normals are not of unit length; expected unit normals: normalise the map"),
+            format!("{fraction} % of normals are not of unit length; expected unit normals: normalise the map"),
         );
     }
     if let Some(found) = y_direction(&sprite).filter(|found| found.is_down && found.confidence >= MIN_CONFIDENCE) {
@@ -95,12 +95,12 @@ pub fn lint_sprite(path: &Path, picture: &RgbaImage, layout: SpriteLayout) -> Re
 
 /// Clears the borders of all frames. Returns the frame with the largest alpha on its border, and that alpha; `None` if
 /// all were clear.
-pub(super) fn clear_borders(picture: &mut RgbaImage, layout: SpriteLayout) -> Option<(u32, u8)> {
+pub(super) fn clear_borders(image: &mut RgbaImage, layout: SpriteLayout) -> Option<(u32, u8)> {
     let columns = layout.columns.max(1);
     let rows = layout.rows.max(1);
-    let size = UVec2::new(picture.width() / columns, picture.height() / rows).max(UVec2::ONE);
+    let size = UVec2::new(image.width() / columns, image.height() / rows).max(UVec2::ONE);
     let mut most: Option<(u32, u8)> = None;
-    for (x, y, texel) in picture.enumerate_pixels_mut() {
+    for (x, y, texel) in image.enumerate_pixels_mut() {
         let inside = UVec2::new(x, y) % size;
         if size.min_element() > 2 && (inside.min_element() == 0 || (inside + 1).cmpeq(size).any()) {
             if texel.0[3] > most.map_or(0, |(_, alpha)| alpha) {
@@ -214,17 +214,17 @@ mod tests {
         decode_png(Path::new("wisp"), wisp.bytes).unwrap().to_rgba8()
     }
 
-    fn names(picture: &RgbaImage, layout: SpriteLayout) -> Vec<&'static str> {
-        lint_sprite(Path::new("a.png"), picture, layout).unwrap().into_iter().map(|finding| finding.name).collect()
+    fn names(image: &RgbaImage, layout: SpriteLayout) -> Vec<&'static str> {
+        lint_sprite(Path::new("a.png"), image, layout).unwrap().into_iter().map(|finding| finding.name).collect()
     }
 
     /// The wisp with every texel changed.
     fn changed(change: impl Fn([f32; 4]) -> [f32; 4]) -> RgbaImage {
-        let mut picture = wisp();
-        for texel in picture.pixels_mut() {
+        let mut image = wisp();
+        for texel in image.pixels_mut() {
             texel.0 = change(texel.0.map(f32::from)).map(|channel| channel.round() as u8);
         }
-        picture
+        image
     }
 
     #[test]
@@ -233,10 +233,10 @@ mod tests {
             let sprite = builtin.sprite().unwrap();
             let found = y_direction(&sprite).unwrap();
             assert!(!found.is_down && found.confidence > MIN_CONFIDENCE, "{}: {found:?}", builtin.name);
-            let picture = decode_png(Path::new(builtin.name), builtin.bytes).unwrap().to_rgba8();
-            let columns = picture.width() / sprite.size();
+            let image = decode_png(Path::new(builtin.name), builtin.bytes).unwrap().to_rgba8();
+            let columns = image.width() / sprite.size();
             let layout = SpriteLayout { columns, rows: sprite.frame_count() / columns, y_down: false };
-            assert_eq!(lint_sprite(Path::new(builtin.name), &picture, layout).unwrap(), [], "{}", builtin.name);
+            assert_eq!(lint_sprite(Path::new(builtin.name), &image, layout).unwrap(), [], "{}", builtin.name);
         }
     }
 

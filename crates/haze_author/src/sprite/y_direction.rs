@@ -47,9 +47,9 @@ pub fn y_direction(sprite: &Sprite) -> Option<YDirection> {
             }
         }
     }
-    let share = |sum: f32, all: f32| if all > 1.0e-6 { sum / all } else { 0.0 };
-    let edges = share(agrees, all);
-    let curls = share(along, total);
+    let fraction = |sum: f32, all: f32| if all > 1.0e-6 { sum / all } else { 0.0 };
+    let edges = fraction(agrees, all);
+    let curls = fraction(along, total);
     let sum = (edges + curls).clamp(-1.0, 1.0);
     (all > 1.0e-6).then_some(YDirection { is_down: sum < 0.0, confidence: sum.abs() })
 }

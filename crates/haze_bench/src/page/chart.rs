@@ -59,11 +59,11 @@ impl Scale {
     }
 
     fn place(&self, value: f64) -> f64 {
-        let share = match self.axis {
+        let fraction = match self.axis {
             Axis::Linear => (value - self.low) / (self.high - self.low),
             Axis::Logarithmic => (value / self.low).ln() / (self.high / self.low).ln(),
         };
-        self.from + (self.to - self.from) * share
+        self.from + (self.to - self.from) * fraction
     }
 
     /// Returns about five round values.
@@ -141,13 +141,13 @@ impl Chart<'_> {
 
 impl Series {
     fn draw(&self, svg: &mut String, color: usize, x: &Scale, y: &Scale) {
-        let places: Vec<(f64, f64, &str)> =
+        let positions: Vec<(f64, f64, &str)> =
             self.points.iter().map(|(at, value, note)| (x.place(*at), y.place(*value), note.as_str())).collect();
         if self.has_line {
-            let line: Vec<String> = places.iter().map(|(x, y, _)| format!("{x:.1} {y:.1}")).collect();
+            let line: Vec<String> = positions.iter().map(|(x, y, _)| format!("{x:.1} {y:.1}")).collect();
             let _ = write!(svg, "<path class=\"line c{color}\" d=\"M{}\"/>", line.join("L"));
         }
-        for (x, y, note) in places {
+        for (x, y, note) in positions {
             let _ = write!(
                 svg,
                 "<circle class=\"dot c{color}\" cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"4\"><title>{}</title></circle>",

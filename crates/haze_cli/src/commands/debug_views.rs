@@ -22,5 +22,5 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
     let backend = arguments.shot.run.backend()?;
     let sheet =
         block_on(render_sheet(&backend, &stages(&shot), COLUMNS, &arguments.shot.output, &ExportProgress::terminal()))?;
-    arguments.shot.write(sheet.picture, &shot, &backend)
+    arguments.shot.write(sheet.image, &shot, &backend)
 }

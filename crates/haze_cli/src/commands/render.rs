@@ -111,8 +111,8 @@ fn image(arguments: &Arguments) -> Result<(), Error> {
     }
     let one = Frames { range: 0..=0, rate: 1.0, format: arguments.format() };
     let progress = ExportProgress::Callback(&|_, _| true);
-    let picture = block_on(image_export::render_flipbook(&backend, &shot, &one, UVec2::ONE, path, &progress))?;
-    arguments.shot.write(picture, &shot, &backend)
+    let image = block_on(image_export::render_flipbook(&backend, &shot, &one, UVec2::ONE, path, &progress))?;
+    arguments.shot.write(image, &shot, &backend)
 }
 
 fn sequence(arguments: &Arguments, frames: &Frames) -> Result<(), Error> {

@@ -54,5 +54,5 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
     let mut sheet =
         block_on(render_sheet(&backend, &cells, columns, &arguments.shot.output, &ExportProgress::terminal()))?;
     sheet.add_footer(&format!("{name}; {}, {}x{}, {}", base.preset.name, size.x, size.y, backend.description()));
-    arguments.shot.write(sheet.picture, &base, &backend)
+    arguments.shot.write(sheet.image, &base, &backend)
 }

@@ -60,14 +60,14 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
     let rounds = if matches!(backend, Backend::Cpu) { ROUNDS_ON_CPU } else { ROUNDS };
     let costs = measure(&backend, &shot, &cells, rounds)?;
 
-    let zoom = Zoom::at_largest_difference(&cells[0].picture, &cells[1].picture);
+    let zoom = Zoom::at_largest_difference(&cells[0].image, &cells[1].image);
     let mut sheet = ContactSheet::new(shot.size, COLUMNS, cells.len() as u32);
     for (index, cell) in (0..).zip(&cells) {
         let mut label = cell.name.to_owned();
         if let Some(costs) = &costs {
             label += &format!("    {}", cost_label(&costs[index], &costs[0]));
         }
-        let zoomed = zoom.inset(&cell.picture);
+        let zoomed = zoom.inset(&cell.image);
         if let Some(path) = in_cells(cell.name) {
             write_png(&path, &zoomed.clone().into(), arguments.shot.effort())?;
         }
@@ -81,7 +81,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
     if let Some(curves) = &arguments.curves {
         write_png(curves, &fade_curves().into(), arguments.shot.effort())?;
     }
-    arguments.shot.write(sheet.picture, &shot, &backend)
+    arguments.shot.write(sheet.image, &shot, &backend)
 }
 
 /// Content of a cell.
@@ -101,7 +101,7 @@ fn variants() -> impl Iterator<Item = Variant> {
 struct Cell {
     name: &'static str,
     shot: Shot,
-    picture: RgbImage,
+    image: RgbImage,
 }
 
 /// Renders the shot with every technique that is possible; `hard` and `soft` always are.
@@ -116,7 +116,7 @@ fn render_cells(backend: &Backend, shot: &Shot) -> Result<Vec<Cell>, Error> {
             }
         }
         match backend.render(&shot) {
-            Ok(picture) => cells.push(Cell { picture: tonemap(&picture, &shot), name: variant.name, shot }),
+            Ok(image) => cells.push(Cell { image: tonemap(&image, &shot), name: variant.name, shot }),
             // The sprite has no detail map, or the adapter cannot render to R32Float.
             Err(Error::Field(error)) if error.field.ends_with("settings.technique") => {
                 print_error(format_args!("left out: {error}"));
@@ -132,7 +132,7 @@ fn measure(backend: &Backend, shot: &Shot, cells: &[Cell], rounds: u32) -> Resul
     let mut bare = shot.clone();
     bare.preset.systems.clear();
     let bare = tonemap(&backend.render(&bare)?, &bare);
-    if cells.iter().all(|cell| cell.picture == bare) {
+    if cells.iter().all(|cell| cell.image == bare) {
         print_error("no smoke is visible: costs are left out");
         return Ok(None);
     }
@@ -189,28 +189,28 @@ impl Zoom {
         Self { corner, side }
     }
 
-    fn inset(&self, picture: &RgbImage) -> RgbImage {
-        let mut picture = picture.clone();
-        let size = UVec2::from(picture.dimensions());
+    fn inset(&self, image: &RgbImage) -> RgbImage {
+        let mut image = image.clone();
+        let size = UVec2::from(image.dimensions());
         let enlarged = (self.side * MAGNIFICATION).min(size.min_element());
-        let part = imageops::crop_imm(&picture, self.corner.x, self.corner.y, self.side, self.side).to_image();
+        let part = imageops::crop_imm(&image, self.corner.x, self.corner.y, self.side, self.side).to_image();
         let part = imageops::resize(&part, enlarged, enlarged, imageops::FilterType::CatmullRom);
         // In the right corner, or in the left one if it would hide the square itself.
         let covers = self.corner.x + self.side > size.x - enlarged;
         let at = UVec2::new(if covers { 0 } else { size.x - enlarged }, size.y - enlarged);
-        imageops::replace(&mut picture, &part, i64::from(at.x), i64::from(at.y));
-        outline(&mut picture, at, enlarged);
-        outline(&mut picture, self.corner, self.side);
-        picture
+        imageops::replace(&mut image, &part, i64::from(at.x), i64::from(at.y));
+        outline(&mut image, at, enlarged);
+        outline(&mut image, self.corner, self.side);
+        image
     }
 }
 
-fn outline(picture: &mut RgbImage, corner: UVec2, side: u32) {
+fn outline(image: &mut RgbImage, corner: UVec2, side: u32) {
     const LINE: Rgb<u8> = Rgb([240, 240, 235]);
     let last = side - 1;
     for i in 0..side {
         for (x, y) in [(i, 0), (i, last), (0, i), (last, i)] {
-            if let Some(pixel) = picture.get_pixel_mut_checked(corner.x + x, corner.y + y) {
+            if let Some(pixel) = image.get_pixel_mut_checked(corner.x + x, corner.y + y) {
                 *pixel = LINE;
             }
         }

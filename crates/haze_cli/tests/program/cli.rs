@@ -87,8 +87,8 @@ fn render(folder: &Path, arguments: &[&str]) -> Output {
 }
 
 fn size_of(path: &Path) -> (u32, u32) {
-    let picture = haze_core::assets::image::read_png(path).unwrap();
-    (picture.width(), picture.height())
+    let image = haze_core::assets::image::read_png(path).unwrap();
+    (image.width(), image.height())
 }
 
 #[test]
@@ -106,13 +106,13 @@ fn both_renderers_write_an_image_of_the_requested_size() {
 #[test]
 fn every_option_changes_the_image() {
     let folder = folder();
-    let picture = |arguments: &[&str]| {
+    let image = |arguments: &[&str]| {
         let output = render(folder.path(), arguments);
         assert!(output.status.success(), "{arguments:?}: {}", stderr(&output));
         std::fs::read(folder.path().join("out.png")).unwrap()
     };
-    let plain = picture(&[]);
-    assert_eq!(plain, picture(&["column"]), "the same command makes the same bytes");
+    let plain = image(&[]);
+    assert_eq!(plain, image(&["column"]), "the same command makes the same bytes");
     let changes: [&[&str]; 6] = [
         &["--time", "3"],
         &["--scale", "8"],
@@ -122,7 +122,7 @@ fn every_option_changes_the_image() {
         &["fence"],
     ];
     for change in changes {
-        assert_ne!(plain, picture(change), "{change:?}");
+        assert_ne!(plain, image(change), "{change:?}");
     }
 }
 

@@ -95,18 +95,15 @@ fn pipes_and_devices_are_refused_without_waiting() {
     let refused = |name: &str| refusal(folder.path(), &["preset", "check", name]);
     assert!(refused("pipe.json").starts_with("haze: pipe.json: a pipe, not a file; expected a JSON file"));
     assert!(refused("/dev/zero").starts_with("haze: /dev/zero: a device, not a file; expected a JSON file"));
-    let picture = system(folder.path(), "\"material\": {\"sprite\": \"pipe.png\"}");
-    assert!(
-        picture.starts_with("haze: my.json: systems[1].material.sprite: pipe.png: a pipe, not a file"),
-        "{picture}"
-    );
+    let image = system(folder.path(), "\"material\": {\"sprite\": \"pipe.png\"}");
+    assert!(image.starts_with("haze: my.json: systems[1].material.sprite: pipe.png: a pipe, not a file"), "{image}");
 }
 
 #[test]
 fn images_have_a_limit_each_and_a_limit_in_total() {
     let folder = folder();
-    let save = |name: &str, picture: DynamicImage| {
-        picture.save_with_format(folder.path().join(name), ImageFormat::Png).unwrap();
+    let save = |name: &str, image: DynamicImage| {
+        image.save_with_format(folder.path().join(name), ImageFormat::Png).unwrap();
     };
     save("deep.png", DynamicImage::new_rgb16(4096, 4096));
     assert_eq!(
@@ -127,8 +124,8 @@ fn images_have_a_limit_each_and_a_limit_in_total() {
     let four = ramps(&["diffuse_ramp", "soft_scatter_ramp", "specular_ramp", "motif"]);
     assert_eq!(
         preset(folder.path(), &[&five, &four]),
-        "haze: my.json: systems[1].material.motif: up to this one, the pictures of the preset take \
-         1152 MiB; expected at most 1024 MiB, each picture counted as often as it is named"
+        "haze: my.json: systems[1].material.motif: up to this one, the images of the preset take \
+         1152 MiB; expected at most 1024 MiB, each image counted as often as it is named"
     );
 }
 
@@ -150,7 +147,7 @@ fn files_that_are_not_json_are_refused_with_their_kind() {
     }
     let mut png = Vec::new();
     DynamicImage::new_rgb8(1, 1).write_to(&mut std::io::Cursor::new(&mut png), ImageFormat::Png).unwrap();
-    assert_eq!(said(&png), "haze: a.json:1:1: a PNG picture; expected JSON as UTF-8 text");
+    assert_eq!(said(&png), "haze: a.json:1:1: a PNG image; expected JSON as UTF-8 text");
     assert_eq!(said(b"{\n \"name\": \"caf\xe9\"}"), "haze: a.json:2:14: not UTF-8; expected JSON as UTF-8 text");
     // A byte order mark is no mistake: what is missing is the name.
     assert_eq!(said(format!("\u{feff}{text}").as_bytes()), "haze: a.json:1:14: missing field `name`");
@@ -168,12 +165,12 @@ fn errors_name_the_system_and_the_field() {
         said("\"material\": {\"columns\": true}"),
         "haze: my.json:2:85: systems[1].material.columns: true is not valid; expected a whole number, 0 to 4294967295"
     );
-    let picture = |inside: &str| said(&format!("\"material\": {{\"columns\": 2, {inside}}}"));
-    let missing = picture("\"sprite\": \"none.png\"");
+    let image = |inside: &str| said(&format!("\"material\": {{\"columns\": 2, {inside}}}"));
+    let missing = image("\"sprite\": \"none.png\"");
     assert!(missing.starts_with("haze: my.json: systems[1].material.sprite: none.png: No such file"), "{missing}");
     RgbImage::new(64, 48).save(folder.path().join("own.png")).unwrap();
     assert_eq!(
-        picture("\"sprite\": \"own.png\""),
+        image("\"sprite\": \"own.png\""),
         "haze: my.json: systems[1].material.sprite: own.png: 64x48 pixels do not divide into 2x1 square frames; \
          expected columns and rows that give square frames"
     );

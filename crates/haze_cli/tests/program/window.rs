@@ -49,7 +49,7 @@ fn line(mut command: Command, code: i32) -> String {
 const BRIGHT: [&str; 4] = ["--set", "camera.exposure=2.5", "--set", "time=3"];
 
 /// Returns a screenshot of the window with these arguments, and the time it took.
-fn picture(display: &Display, variables: &[(&str, &str)], arguments: &[&str]) -> (RgbImage, Duration) {
+fn image(display: &Display, variables: &[(&str, &str)], arguments: &[&str]) -> (RgbImage, Duration) {
     let folder = folder();
     let all = [&["tweak", "--size", "700x420", "--screenshot", "a.png"], arguments].concat();
     let start = Instant::now();
@@ -59,21 +59,21 @@ fn picture(display: &Display, variables: &[(&str, &str)], arguments: &[&str]) ->
     (haze_core::assets::image::read_png(&folder.path().join("a.png")).unwrap().into_rgb8(), taken)
 }
 
-fn brightness(picture: &RgbImage) -> f64 {
-    picture.as_raw().iter().map(|channel| f64::from(*channel)).sum::<f64>() / picture.as_raw().len() as f64
+fn brightness(image: &RgbImage) -> f64 {
+    image.as_raw().iter().map(|channel| f64::from(*channel)).sum::<f64>() / image.as_raw().len() as f64
 }
 
 #[test]
 fn screenshots_follow_settings_and_a_lost_device_changes_nothing() {
     let _lock = window_lock();
     let display = Display::start();
-    let (plain, _) = picture(&display, &[], &[]);
+    let (plain, _) = image(&display, &[], &[]);
     assert_eq!(plain.dimensions(), (700, 420));
     // Both compile the same pipelines, so neither time depends on the machine alone. It may be busy: the best of some tries.
     let is_rebuilt_as_fast_as_opened = (0..4).any(|_| {
-        let (bright, opened) = picture(&display, &[], &BRIGHT);
+        let (bright, opened) = image(&display, &[], &BRIGHT);
         assert!(brightness(&bright) > brightness(&plain) + 5.0);
-        let (again, opened_twice) = picture(&display, &[("HAZE_TEST_LOSE_DEVICE", "3")], &BRIGHT);
+        let (again, opened_twice) = image(&display, &[("HAZE_TEST_LOSE_DEVICE", "3")], &BRIGHT);
         assert!(again == bright, "a lost device changed settings, time, undo or panels");
         opened_twice < 2 * opened
     });
@@ -184,10 +184,10 @@ fn unsaved_work_of_a_killed_window_is_offered_by_the_next_one() {
     let child = start();
     let window = client.window();
     // Searches the bar below the menus for its first button, from the left.
-    let mut places = (150..650).step_by(15).cycle();
+    let mut positions = (150..650).step_by(15).cycle();
     wait_for_rest(&child, ANSWERED);
     wait_until("the work is offered", || {
-        client.click(places.next().unwrap(), 45);
+        client.click(positions.next().unwrap(), 45);
         // A second click before the answer to the first would hit what the bar has covered.
         wait_for_rest(&child, ANSWERED);
         !first.exists()

@@ -62,6 +62,6 @@ mod tests {
         });
         let is_file = wait.recv_timeout(std::time::Duration::from_secs(10)).unwrap();
         assert!(!is_file.unwrap());
-        assert!(read(&path, "PNG picture", 1).unwrap_err().to_string().contains("a pipe, not a file"));
+        assert!(read(&path, "PNG image", 1).unwrap_err().to_string().contains("a pipe, not a file"));
     }
 }

@@ -120,7 +120,7 @@ fn emitters() -> impl Iterator<Item = Emitter> {
             velocity: Vec3::Z,
             ..base
         },
-        Emitter { wind_shear: Vec3::new(0.5, 2.0, -0.2), small_share: 0.4, small_size: 0.2, ..base },
+        Emitter { wind_shear: Vec3::new(0.5, 2.0, -0.2), small_fraction: 0.4, small_size: 0.2, ..base },
         Emitter { orbit: -0.4, wind: Vec3::new(0.5, 0.0, 1.0), extent: Vec3::splat(1.0), ..base },
         Emitter { attraction: 1.5, attractor: Vec3::new(1.0, 2.0, 0.0), ring_speed: 0.5, ..base },
         Emitter { floor_margin: 0.6, floor: -0.5, buoyancy: -1.5, wind: Vec3::Z, orbit: 0.1, ..base },
@@ -180,7 +180,8 @@ fn velocity_is_the_change_of_position() {
 #[test]
 fn smoke_of_any_size_moves_alike() {
     for emitter in emitters() {
-        // Not what stays where it is, nor births that f32 rounds to another number. Swirls are those of a place: at the origin.
+        // Not what stays where it is, nor births that f32 rounds to another number. Swirls are those of a position: at the
+        // origin.
         if emitter.bounce > 0.0 || emitter.attraction != 0.0 || emitter.duration > 0.0 {
             continue;
         }
@@ -266,14 +267,15 @@ fn smoke_flows_around_an_obstacle() {
 
 #[test]
 fn small_particles_have_their_share() {
-    let emitter = Emitter { small_share: 0.3, small_size: 0.25, radius_spread: 0.0, rate: 400.0, ..Emitter::default() };
-    let usual = at(&Emitter { small_share: 0.0, ..emitter }, 20.0);
+    let emitter =
+        Emitter { small_fraction: 0.3, small_size: 0.25, radius_spread: 0.0, rate: 400.0, ..Emitter::default() };
+    let usual = at(&Emitter { small_fraction: 0.0, ..emitter }, 20.0);
     let particles = at(&emitter, 20.0);
     let small = particles.iter().zip(&usual).filter(|(a, b)| (a.radius - 0.25 * b.radius).abs() < 1.0e-6).count();
     let same = particles.iter().zip(&usual).filter(|(a, b)| a == b).count();
     assert_eq!(small + same, particles.len());
-    let share = small as f32 / particles.len() as f32;
-    assert!((share - 0.3).abs() < 0.04, "{share}");
+    let fraction = small as f32 / particles.len() as f32;
+    assert!((fraction - 0.3).abs() < 0.04, "{fraction}");
 }
 
 #[test]
@@ -294,7 +296,7 @@ fn births_follow_the_curve_of_the_rate() {
         assert!((count(&rising, pulse + 0.5) - 50.0).abs() < 10.0, "{}", count(&rising, pulse + 0.5));
         assert!((count(&rising, pulse + 0.999) - 350.0).abs() < 10.0, "{}", count(&rising, pulse + 0.999));
     }
-    // One emission, and one without an end, in which there is no place on the curve.
+    // One emission, and one without an end, in which there is no position on the curve.
     assert!((count(&Emitter { period: 0.0, ..rising }, 0.999) - 350.0).abs() < 10.0);
     let endless = Emitter { period: 0.0, duration: 0.0, ..rising };
     assert_eq!(at(&endless, 3.0), at(&Emitter { rate_curve: Curve::constant(1.0), ..endless }, 3.0));

@@ -23,7 +23,7 @@ pub fn bump_integral(q: f32) -> f32 {
     0.5 + 0.9375 * x * (1.0 - square * (2.0 / 3.0 - square * 0.2))
 }
 
-/// Radius of a sprite's bump: its own, and at least that at which a lookup hardly depends on its place between cells.
+/// Radius of a sprite's bump: its own, and at least that at which a lookup hardly depends on its position between cells.
 pub fn bump_radius(radius: f32) -> f32 {
     radius.max(1.5)
 }

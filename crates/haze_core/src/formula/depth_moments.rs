@@ -1,4 +1,4 @@
-//! Depth of smoke at a pixel, from accumulated moments. Depths are shares of a system's range of view depths.
+//! Depth of smoke at a pixel, from accumulated moments. Depths are fractions of a system's range of view depths.
 
 use glam::Vec2;
 

@@ -38,9 +38,9 @@ pub fn birth_offset(emitter: &EmitterUniform, random: Vec3) -> Vec3 {
 
 /// Seconds from the interval of the first birth to that of another.
 pub fn birth_delay(emitter: &EmitterUniform, number: u32) -> f32 {
-    let place = emitter.first_in_pulse + number;
-    let pulse = place / emitter.per_pulse;
-    let in_pulse = place % emitter.per_pulse;
+    let position = emitter.first_in_pulse + number;
+    let pulse = position / emitter.per_pulse;
+    let in_pulse = position % emitter.per_pulse;
     let births = i64::from(in_pulse) - i64::from(emitter.first_in_pulse);
     pulse as f32 * emitter.period + births as f32 / emitter.rate
 }
@@ -51,8 +51,8 @@ const GOLDEN: u32 = 2_654_435_769;
 /// True if a birth happens. Those that do are spread evenly among all.
 pub fn is_born(emitter: &EmitterUniform, number: u32) -> bool {
     let in_pulse = (emitter.first_in_pulse + number) % emitter.per_pulse;
-    let share = curve_value(&emitter.rate_curve, (in_pulse as f32 + 0.5) / emitter.per_pulse as f32);
-    unit(emitter.first.wrapping_add(number).wrapping_mul(GOLDEN)) < share
+    let fraction = curve_value(&emitter.rate_curve, (in_pulse as f32 + 0.5) / emitter.per_pulse as f32);
+    unit(emitter.first.wrapping_add(number).wrapping_mul(GOLDEN)) < fraction
 }
 
 /// Rotation at birth, radians: any at a spread of 1, about upright at small ones.
@@ -70,7 +70,7 @@ pub fn emitted_particle_on(emitter: &EmitterUniform, number: u32, reached: &mut 
     let index = emitter.first.wrapping_add(number);
     let random = |salt| birth_random(index, salt, emitter.seed);
     let life = random(0);
-    let place = random(1);
+    let random_offset = random(1);
     let motion = random(2);
     let look = random(3);
     let color = random(4);
@@ -82,15 +82,15 @@ pub fn emitted_particle_on(emitter: &EmitterUniform, number: u32, reached: &mut 
     }
     let age = seconds / lifetime;
 
-    let offset = birth_offset(emitter, place);
+    let offset = birth_offset(emitter, random_offset);
     let velocity = emitter.velocity
         + offset.normalize_or_zero() * emitter.burst
         + unit_sphere(motion) * (emitter.velocity_spread * life.z);
-    let mut size = if color.z < emitter.small_share { emitter.small_size } else { 1.0 };
-    let mut share = 1.0;
+    let mut size = if color.z < emitter.small_fraction { emitter.small_size } else { 1.0 };
+    let mut fraction = 1.0;
     if emitter.has_curves != 0 {
         size *= curve_value(&emitter.size_curve, age);
-        share = curve_value(&emitter.amount_curve, age);
+        fraction = curve_value(&emitter.amount_curve, age);
     }
     let start = Flight { position: emitter.position + offset, velocity };
     let moved = paced_flight(emitter, &start, &pace_at(emitter, lifetime, seconds));
@@ -108,8 +108,8 @@ pub fn emitted_particle_on(emitter: &EmitterUniform, number: u32, reached: &mut 
         position_radius: position.extend(radius),
         rotation_amount_frame_age: Vec4::new(
             rotation_at_birth(emitter.rotation_spread, look.y) + emitter.spin * (2.0 * look.z - 1.0) * turned,
-            emitter.amount * share * fade_in * fade_out,
-            place.x * 256.0 + seconds * emitter.frame_rate,
+            emitter.amount * fraction * fade_in * fade_out,
+            random_offset.x * 256.0 + seconds * emitter.frame_rate,
             age,
         ),
         velocity: moved.velocity + carried.velocity,

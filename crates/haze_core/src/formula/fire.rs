@@ -4,18 +4,18 @@ use glam::Vec2;
 
 use super::saturate;
 
-/// Heat at a place of a sprite. `thickness`: alpha of the sprite's image there, 0 to 1. `facing`: cosine between its normal
-/// and the direction to the viewer. `core`: share by which a thin edge is cooler than the middle. `crust`: share by which
+/// Heat at a position of a sprite. `thickness`: alpha of the sprite's image there, 0 to 1. `facing`: cosine between its normal
+/// and the direction to the viewer. `core`: fraction by which a thin edge is cooler than the middle. `crust`: fraction by which
 /// the side that faces the viewer is cooler than the creases.
 pub fn heat_at(heat: f32, thickness: f32, facing: f32, core: f32, crust: f32) -> f32 {
     let front = saturate(facing);
     heat * (1.0 - core * (1.0 - thickness)) * (1.0 - crust * front * front)
 }
 
-/// Mean heat of the smoke that burns at a point, and its share of all visible smoke there. `moments`: means of heat and of
+/// Mean heat of the smoke that burns at a point, and its fraction of all visible smoke there. `moments`: means of heat and of
 /// its square over that smoke.
 ///
-/// Heat itself is the weight of the mean. Cold smoke in front of a fire then takes from the share, not from the heat: the
+/// Heat itself is the weight of the mean. Cold smoke in front of a fire then takes from the fraction, not from the heat: the
 /// fire grows dim and keeps its color.
 pub fn fire_from_moments(moments: Vec2) -> Vec2 {
     let burns = moments.x > 1.0e-4 && moments.y > 1.0e-8;

@@ -34,9 +34,9 @@ pub fn swirl(emitter: &EmitterUniform, position: Vec3, later: f32) -> Vec3 {
 const RING_SALT: u32 = 5;
 /// A ring takes in air and widens by so much of its way: chosen by eye.
 const RING_GROWTH: f32 = 0.12;
-/// Random variation of radius and speed, up and down, as a share, and of the axis, as a share of its length.
+/// Random variation of radius and speed, up and down, as a fraction, and of the axis, as a fraction of its length.
 const RING_SPREAD: f32 = 0.3;
-/// Share of the life after which a ring rolls at full speed.
+/// Fraction of the life after which a ring rolls at full speed.
 const RING_ONSET: f32 = 0.1;
 
 /// Velocity around a rolling ring that leaves the source at the time of its number and flies as a particle does: forward
@@ -66,10 +66,10 @@ pub fn ring(emitter: &EmitterUniform, position: Vec3, number: f32, later: f32) -
 /// Velocity of the two rings between which a particle was born; `born` is the number of its birth among them.
 pub fn rings(emitter: &EmitterUniform, position: Vec3, born: f32, later: f32) -> Vec3 {
     let last = born.floor();
-    let share = born - last;
+    let fraction = born - last;
     // Full for half of the way to either, and continuous where another pair begins.
-    ring(emitter, position, last, later) * smoothstep_unit(2.0 - 2.0 * share)
-        + ring(emitter, position, last + 1.0, later) * smoothstep_unit(2.0 * share)
+    ring(emitter, position, last, later) * smoothstep_unit(2.0 - 2.0 * fraction)
+        + ring(emitter, position, last + 1.0, later) * smoothstep_unit(2.0 * fraction)
 }
 
 /// The part of a surface that is nearest to smoke which flows around it.
@@ -132,7 +132,7 @@ pub struct Flying {
 
 /// Steps of the way through the flow, over a life.
 pub const FLOW_STEPS: u32 = 32;
-/// Share of the life over which the swirls take hold: smoke leaves the source smooth and breaks up later.
+/// Fraction of the life over which the swirls take hold: smoke leaves the source smooth and breaks up later.
 const SWIRL_ONSET: f32 = 0.15;
 
 /// Way of a particle through the flow, from the beginning of a step to its end: where it has been carried to, and the

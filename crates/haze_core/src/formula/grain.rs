@@ -13,8 +13,8 @@ const GRAIN_DOWN: Vec3 = Vec3::new(0.14178, 0.62548, -0.76725);
 /// Density that half of the noise is above.
 const MIDDLE_DENSITY: f32 = 0.5;
 
-/// Share of an octave that a target can show. `fineness`: texels of the noise per texel of the target.
-pub fn octave_share(fineness: f32) -> f32 {
+/// Fraction of an octave that a target can show. `fineness`: texels of the noise per texel of the target.
+pub fn octave_fraction(fineness: f32) -> f32 {
     saturate(1.5 / fineness.max(1.0e-6) - 0.5)
 }
 
@@ -24,14 +24,14 @@ pub fn octave_share(fineness: f32) -> f32 {
 pub fn sample_grain(noise: &impl Texture3d, uv: Vec2, phase: f32, tiles: f32, fineness: f32, octaves: u32) -> Vec3 {
     let mut sum = Vec4::ZERO;
     let mut total = 0.0;
-    let mut place = (GRAIN_RIGHT * uv.x + GRAIN_DOWN * uv.y) * tiles + phase;
+    let mut position = (GRAIN_RIGHT * uv.x + GRAIN_DOWN * uv.y) * tiles + phase;
     let mut weight = 1.0;
     let mut fine = fineness;
     for _ in 0..octaves {
-        let share = weight * octave_share(fine);
-        sum += sample_noise_volume(noise, place) * share;
-        total += share;
-        place *= 3.0;
+        let fraction = weight * octave_fraction(fine);
+        sum += sample_noise_volume(noise, position) * fraction;
+        total += fraction;
+        position *= 3.0;
         fine *= 3.0;
         weight *= 0.5;
     }
@@ -52,9 +52,9 @@ pub fn eroded(amount: f32, density: f32, erosion: f32) -> f32 {
     saturate((amount - threshold) / (1.0 - threshold).max(0.01))
 }
 
-/// Share of a sprite's density that erosion keeps. `eroded_share`: the same at an erosion of 1.
-pub fn kept_share(eroded_share: f32, erosion: f32) -> f32 {
-    1.0 - (1.0 - eroded_share) * erosion
+/// Fraction of a sprite's density that erosion keeps. `eroded_fraction`: the same at an erosion of 1.
+pub fn kept_fraction(eroded_fraction: f32, erosion: f32) -> f32 {
+    1.0 - (1.0 - eroded_fraction) * erosion
 }
 
 /// Normal with a tilt, at most of unit length.

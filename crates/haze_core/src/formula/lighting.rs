@@ -74,18 +74,18 @@ pub fn soft_scatter_weight(amount: f32, scatter_amount: f32, scatter_smooth: f32
     x * x * (3.0 - 2.0 * x)
 }
 
-/// Share of the scene that the smoke hides, 0..1. (OTEE "Diffuse lighting", col.a)
+/// Fraction of the scene that the smoke hides, 0..1. (OTEE "Diffuse lighting", col.a)
 pub fn coverage(amount: f32, boost: f32) -> f32 {
     saturate(amount * boost)
 }
 
-/// Share that a color of a coverage or heat ramp stands for. It is the sRGB code of the color's luminance, so that a
+/// Fraction that a color of a coverage or heat ramp stands for. It is the sRGB code of the color's luminance, so that a
 /// displayed middle gray is half.
-pub fn painted_share(paint: Vec3) -> f32 {
+pub fn painted_fraction(paint: Vec3) -> f32 {
     srgb_from_linear(saturate(luminance(paint)))
 }
 
-/// Share of the smoke's depth range that lies in front of a light: 0 before its near side, 1 behind its far side. (OTEE
+/// Fraction of the smoke's depth range that lies in front of a light: 0 before its near side, 1 behind its far side. (OTEE
 /// "Specular scattering")
 pub fn specular_scatter_fade(light_depth: f32, smoke_near: f32, smoke_far: f32) -> f32 {
     saturate((light_depth - smoke_near) / (smoke_far - smoke_near).max(1.0e-4))

@@ -29,12 +29,12 @@ pub fn sample_noise_octaves(noise: &impl Texture3d, coordinate: Vec3, octaves: u
     let mut sum = Vec4::ZERO;
     let mut total = 0.0;
     let mut weight = 1.0;
-    let mut place = coordinate;
+    let mut position = coordinate;
     for _ in 0..octaves {
-        sum += sample_noise_volume(noise, place) * weight;
+        sum += sample_noise_volume(noise, position) * weight;
         total += weight;
         weight *= 0.5;
-        place *= 3.0;
+        position *= 3.0;
     }
     let texel = sum / total;
     (texel.xyz() * 2.0 - 1.0).extend(texel.w)

@@ -16,9 +16,9 @@ pub fn knot_coordinate(view_depth: f32, smoke_near: f32, smoke_far: f32) -> f32 
 /// Optical depth of the smoke in front of a view depth, interpolated between the knots.
 pub fn optical_depth_in_front(knots: &[Vec4; 4], view_depth: f32, smoke_near: f32, smoke_far: f32) -> f32 {
     let knots: &[f32] = bytemuck::cast_slice(knots);
-    let place = knot_coordinate(view_depth, smoke_near, smoke_far) * (OPTICAL_DEPTH_KNOTS - 1) as f32;
-    let low = (place as usize).min(OPTICAL_DEPTH_KNOTS - 2);
-    knots[low] + (knots[low + 1] - knots[low]) * (place - low as f32)
+    let position = knot_coordinate(view_depth, smoke_near, smoke_far) * (OPTICAL_DEPTH_KNOTS - 1) as f32;
+    let low = (position as usize).min(OPTICAL_DEPTH_KNOTS - 2);
+    knots[low] + (knots[low + 1] - knots[low]) * (position - low as f32)
 }
 
 /// Weight of a normal: e^(−depth_weight · optical depth), at most 1. The exponent is limited to 8.

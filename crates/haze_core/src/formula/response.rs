@@ -7,7 +7,7 @@ use super::ramp::sample_ramp_2d;
 use super::texture::Texture2d;
 use crate::settings::RampFilter;
 
-/// Share of a light that the smoke sends to the viewer: ramp(dot(n, l) / 2 + 1/2, amount · boost). `against`: as from
+/// Fraction of a light that the smoke sends to the viewer: ramp(dot(n, l) / 2 + 1/2, amount · boost). `against`: as from
 /// [`backlight_weight`](super::lighting::backlight_weight), or 0 without a backlight ramp. (OTEE "Diffuse lighting")
 pub fn diffuse_response<T: Texture2d>(
     [ramp, ramp_from_behind]: [&T; 2],
@@ -37,7 +37,7 @@ pub fn soft_scatter_curve(
     scatter_color.lerp(ambient_color, soft_scatter_weight(amount, scatter_amount, scatter_smooth))
 }
 
-/// Light that hot smoke gives, per share of the scene that all smoke hides. `fire`: as from
+/// Light that hot smoke gives, per fraction of the scene that all smoke hides. `fire`: as from
 /// [`fire_from_moments`](super::fire::fire_from_moments).
 pub fn fire_response(ramp: &impl Texture2d, filter: RampFilter, fire: Vec2, amount: f32, boost: f32) -> Vec3 {
     sample_ramp_2d(ramp, filter, Vec2::new(fire.x, coverage(amount * fire.y, boost))) * fire.y

@@ -22,7 +22,7 @@ pub fn grid_entry(light: Vec4, from: Vec3, size: Vec3) -> Vec4 {
     (from + direction * enter).extend(if enter < reach { 1.0 } else { 0.0 })
 }
 
-/// Share of a light that falls through smoke onto the scene. `painted`: color of the shadow ramp for that optical depth and
+/// Fraction of a light that falls through smoke onto the scene. `painted`: color of the shadow ramp for that optical depth and
 /// a light behind the smoke, which tints what is left of the light.
 pub fn transmitted_light(optical_depth: f32, painted: Vec3) -> Vec3 {
     let brightest = painted.max_element();

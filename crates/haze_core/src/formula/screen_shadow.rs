@@ -1,4 +1,4 @@
-//! Shadow of smoke on a picture that is lit already: its surfaces from their depth, and the share of their light that is
+//! Shadow of smoke on an image that is lit already: its surfaces from their depth, and the fraction of their light that is
 //! left. View space.
 
 use glam::Vec3;
@@ -16,7 +16,7 @@ pub fn scene_normal(center: Vec3, left: Vec3, right: Vec3, above: Vec3, below: V
     normal / normal.length_squared().max(1.0e-30).sqrt()
 }
 
-/// Share of the scene's light that is left. `full`: light of a white matte surface without smoke. `shaded`: through it.
-pub fn share_of_light(full: Vec3, shaded: Vec3) -> Vec3 {
+/// Fraction of the scene's light that is left. `full`: light of a white matte surface without smoke. `shaded`: through it.
+pub fn fraction_of_light(full: Vec3, shaded: Vec3) -> Vec3 {
     (shaded + 1.0e-6) / (full + 1.0e-6)
 }

@@ -35,17 +35,17 @@ pub fn shadow_ray(light: Vec4, from: Vec3, size: Vec3) -> Vec4 {
 /// square of the distance and the angle are a sequence of low discrepancy. (Roberts, "The Unreasonable Effectiveness of
 /// Quasirandom Sequences", 2018)
 pub fn light_disc_offset(step: u32, direction: Vec3) -> Vec3 {
-    let place = (Vec2::new(0.754_877_7, 0.569_840_3) * (step as f32 + 0.5)).fract();
+    let position = (Vec2::new(0.754_877_7, 0.569_840_3) * (step as f32 + 0.5)).fract();
     let axis = if direction.y.abs() > 0.9 { Vec3::X } else { Vec3::Y };
     let right = direction.cross(axis).normalize();
-    let angle = place.y * std::f32::consts::TAU;
-    (right * angle.cos() + right.cross(direction) * angle.sin()) * place.x.sqrt()
+    let angle = position.y * std::f32::consts::TAU;
+    (right * angle.cos() + right.cross(direction) * angle.sin()) * position.x.sqrt()
 }
 
 /// Optical depth of a sprite's own smoke from its center outwards, as a lookup at its center finds it.
 ///
 /// It is c · mass / width². The variance r²/7 of the bump along each axis grows with the size of the cells and by the
-/// trilinear lookups of the march and of the result; `2.0` is fitted to the mean over places between cells. c is 7/4π for
+/// trilinear lookups of the march and of the result; `2.0` is fitted to the mean over positions between cells. c is 7/4π for
 /// a Gaussian, and between 0.439 along an axis and 0.487 along the diagonal of a cube for the bump. Widening takes the bump
 /// to a Gaussian as it takes away its kurtosis, by the square of r²/width².
 pub fn own_optical_depth(radius: f32, depth: f32) -> f32 {

@@ -21,7 +21,7 @@ pub fn six_way_from_texel(texel: Vec3) -> Vec3 {
 }
 
 /// Henyey-Greenstein phase function of a cosine, without its constant factor (1 − anisotropy²) ÷ 4π, which would make
-/// it a share per steradian. `anisotropy` is the mean cosine, within ±0.95. (Henyey and Greenstein, "Diffuse radiation
+/// it a fraction per steradian. `anisotropy` is the mean cosine, within ±0.95. (Henyey and Greenstein, "Diffuse radiation
 /// in the galaxy", 1941)
 pub fn henyey_greenstein(cosine: f32, anisotropy: f32) -> f32 {
     let base = 1.0 + anisotropy * anisotropy - 2.0 * anisotropy * cosine;

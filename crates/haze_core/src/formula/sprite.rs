@@ -93,9 +93,9 @@ pub fn sample_sprite_frame(sprite: &impl Texture2dArray, uv: Vec2, frame: i32, l
 pub fn sample_flipbook(sprite: &impl Texture2dArray, uv: Vec2, frames: FlipbookFrames, motion: Vec2, lod: f32) -> Vec4 {
     let mut texel = sample_sprite_frame(sprite, uv - motion * frames.blend, frames.first, lod);
     if frames.blend > 0.0 {
-        let place = uv + motion * (1.0 - frames.blend);
+        let position = uv + motion * (1.0 - frames.blend);
         // In this form the result is exact if both samples are equal.
-        texel += (sample_sprite_frame(sprite, place, frames.second, lod) - texel) * frames.blend;
+        texel += (sample_sprite_frame(sprite, position, frames.second, lod) - texel) * frames.blend;
     }
     texel
 }
@@ -130,7 +130,7 @@ pub fn sprite_corner(index: u32) -> Vec2 {
 }
 
 /// Corner of a sprite's trimmed rectangle, −1..1, y up. `corner` is the one of the full square; `reach` is the extent
-/// from the center to the left, bottom, right and top, as shares of half a side.
+/// from the center to the left, bottom, right and top, as fractions of half a side.
 pub fn trimmed_corner(corner: Vec2, reach: Vec4) -> Vec2 {
     Vec2::select(corner.cmpgt(Vec2::ZERO), reach.zw(), -reach.xy())
 }

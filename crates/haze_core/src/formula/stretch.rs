@@ -28,21 +28,21 @@ pub fn sprite_stretch(center: Vec3, velocity: Vec3, seconds: f32, radius: f32, l
 /// Least radius of a stretched sprite, texels of the target. Thinner ones would flicker from texel to texel.
 pub const MIN_RADIUS: f32 = 0.75;
 
-/// Share of its amount that a sprite keeps if its radius grows from `radius` to `wide`, so that it hides as much as before.
+/// Fraction of its amount that a sprite keeps if its radius grows from `radius` to `wide`, so that it hides as much as before.
 /// `thin` and `stretch`: its stretch with either radius.
-pub fn widened_share(radius: f32, wide: f32, thin: Vec2, stretch: Vec2) -> f32 {
+pub fn widened_fraction(radius: f32, wide: f32, thin: Vec2, stretch: Vec2) -> f32 {
     let ratio = radius / wide.max(1.0e-9);
     (ratio * ratio * (1.0 - stretch.dot(stretch)) / (1.0 - thin.dot(thin)).max(1.0e-4)).min(1.0)
 }
 
 /// Position on a sprite at rest to its position on the stretched one, relative to the center.
-pub fn stretched(place: Vec2, stretch: Vec2) -> Vec2 {
-    place + stretch * (stretch.dot(place) / (1.0 - stretch.dot(stretch)).max(1.0e-4))
+pub fn stretched(position: Vec2, stretch: Vec2) -> Vec2 {
+    position + stretch * (stretch.dot(position) / (1.0 - stretch.dot(stretch)).max(1.0e-4))
 }
 
 /// Inverse of [`stretched`].
-pub fn unstretched(place: Vec2, stretch: Vec2) -> Vec2 {
-    place - stretch * stretch.dot(place)
+pub fn unstretched(position: Vec2, stretch: Vec2) -> Vec2 {
+    position - stretch * stretch.dot(position)
 }
 
 /// Normal on a stretched sprite, of the same length.
@@ -73,9 +73,9 @@ mod tests {
         let area = |radius: f32| radius * radius / (1.0 - of(radius).length_squared());
         let radius = 0.01;
         let wide = 0.05;
-        let kept = widened_share(radius, wide, of(radius), of(wide));
+        let kept = widened_fraction(radius, wide, of(radius), of(wide));
         assert!((area(wide) * kept - area(radius)).abs() < 1.0e-3 * area(radius));
-        assert!((widened_share(wide, wide, of(wide), of(wide)) - 1.0).abs() < 1.0e-6);
+        assert!((widened_fraction(wide, wide, of(wide), of(wide)) - 1.0).abs() < 1.0e-6);
     }
 
     #[test]

@@ -48,7 +48,7 @@ pub fn density_thickness(view_depth: f32, radius: f32, near: f32, scene: f32) ->
     (scene.min(view_depth + radius) - near.max(view_depth - radius)).max(0.0)
 }
 
-/// Share of that slab that lies beyond the near plane.
+/// Fraction of that slab that lies beyond the near plane.
 pub fn visible_slab_fraction(view_depth: f32, radius: f32, near: f32) -> f32 {
     saturate((view_depth + radius - near) / (2.0 * radius).max(1.0e-6))
 }
@@ -58,9 +58,9 @@ pub fn density_amount(density: f32, thickness: f32) -> f32 {
     1.0 - (-density * thickness).exp()
 }
 
-/// Falloff of a volume from its center. `place` is the position in the sphere, −1..1. (MS "March", step 3)
-pub fn volumetric_falloff(place: Vec3) -> f32 {
-    saturate(1.0 - place.length_squared())
+/// Falloff of a volume from its center. `position` is the position in the sphere, −1..1. (MS "March", step 3)
+pub fn volumetric_falloff(position: Vec3) -> f32 {
+    saturate(1.0 - position.length_squared())
 }
 
 /// Density of a volume, 0..1: noise that is eroded from the outside in. (MS "March", steps 1 and 3)
@@ -68,8 +68,8 @@ pub fn volumetric_density(noise: f32, falloff: f32) -> f32 {
     saturate(2.0 * noise - 1.0 + falloff) * falloff
 }
 
-/// Place where a step of a march ends, as a share of the way through a sphere. `done` is the share of the steps. Steps are
-/// shortest in the middle, where a volume is densest: 7 of them reach the error of 8 equal ones.
+/// Place where a step of a march ends, as a fraction of the way through a sphere. `done` is the fraction of the steps. Steps
+/// are shortest in the middle, where a volume is densest: 7 of them reach the error of 8 equal ones.
 pub fn march_boundary(done: f32) -> f32 {
     let from_middle = 2.0 * done - 1.0;
     0.5 + from_middle * (2.0 + from_middle.powi(4)) / 6.0
@@ -77,8 +77,8 @@ pub fn march_boundary(done: f32) -> f32 {
 
 /// View-space normal at a point of a volume: out of the sphere and down the noise's density, and never away from the
 /// viewer. (MS "March", step 2)
-pub fn volumetric_normal(place: Vec3, gradient: Vec3) -> Vec3 {
-    let normal = place + 2.0 * gradient;
+pub fn volumetric_normal(position: Vec3, gradient: Vec3) -> Vec3 {
+    let normal = position + 2.0 * gradient;
     normal.with_z(normal.z.max(0.1)).normalize()
 }
 

@@ -66,12 +66,12 @@ pub fn touched_bins(tiles: &TilesUniform, rect: UVec2) -> [UVec2; 2] {
 }
 
 /// Allocates a bin's list of `length` sprites and `more` further words behind the `entries` words in use. Returns start
-/// and length of the list, and the words in use after it. A list that does not fit, or that is longer than its share of
+/// and length of the list, and the words in use after it. A list that does not fit, or that is longer than its fraction of
 /// a 32-bit count, becomes the list of all `shown` sprites.
 pub fn bin_list(tiles: &TilesUniform, shown: u32, entries: u32, length: u32, more: u32) -> (UVec2, u32) {
-    let share = u64::from(u32::MAX / (tiles.columns * tiles.rows));
+    let fraction = u64::from(u32::MAX / (tiles.columns * tiles.rows));
     let size = u64::from(length) + u64::from(more);
-    if size > share {
+    if size > fraction {
         return (UVec2::new(NO_LIST, shown), entries);
     }
     let fits = list_fits(entries, size as u32, tiles.capacity);

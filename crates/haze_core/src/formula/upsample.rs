@@ -5,13 +5,13 @@ use glam::{Mat4, Vec2, Vec3, Vec3Swizzles, Vec4, vec3};
 use super::curve::smoothstep_unit;
 use crate::settings::Upsample;
 
-/// Depths that differ by less than this share of the pixel's depth count as one surface.
+/// Depths that differ by less than this fraction of the pixel's depth count as one surface.
 pub const SURFACE_DEPTH_TOLERANCE: f32 = 0.1;
 
-/// Depths that differ by less than this share of a soft fade's length show about the same amount of smoke.
+/// Depths that differ by less than this fraction of a soft fade's length show about the same amount of smoke.
 pub const SMOKE_DEPTH_TOLERANCE: f32 = 0.4;
 
-/// Share of a soft fade's length: the unit of slopes over depth, and the standard deviation of depth that damps them.
+/// Fraction of a soft fade's length: the unit of slopes over depth, and the standard deviation of depth that damps them.
 pub const SLOPE_LENGTH: f32 = 0.05;
 
 /// True if smoke hardly changes between two depths. `fade` is the length of a soft fade, metres.
@@ -64,7 +64,7 @@ pub struct GuidedFit {
     /// Sum of the weights. All sums below are weighted.
     pub total: f32,
     /// Sum of the positions.
-    pub place: Vec3,
+    pub position: Vec3,
     /// Sums of x², y², z².
     pub squares: Vec3,
     /// Sums of xy, xz, yz.
@@ -91,7 +91,7 @@ impl Default for GuidedFit {
     fn default() -> Self {
         Self {
             total: 0.0,
-            place: Vec3::ZERO,
+            position: Vec3::ZERO,
             squares: Vec3::ZERO,
             products: Vec3::ZERO,
             value: Vec4::ZERO,
@@ -108,34 +108,34 @@ impl Default for GuidedFit {
 
 /// Weight of a texel. It falls to zero two texels away, and with depth as a Gaussian of which
 /// [`SURFACE_DEPTH_TOLERANCE`] is two sigma.
-pub fn guided_weight(place: Vec3, depth: f32) -> f32 {
-    let tent = (1.0 - place.xy().abs() * 0.5).max(Vec2::ZERO);
-    let sigmas = place.z * (2.0 / (SURFACE_DEPTH_TOLERANCE * depth.max(1.0e-6)));
+pub fn guided_weight(position: Vec3, depth: f32) -> f32 {
+    let tent = (1.0 - position.xy().abs() * 0.5).max(Vec2::ZERO);
+    let sigmas = position.z * (2.0 / (SURFACE_DEPTH_TOLERANCE * depth.max(1.0e-6)));
     tent.x * tent.x * tent.y * tent.y * ((-0.5 * sigmas * sigmas).exp() + 1.0e-4)
 }
 
 /// Returns the fit with one more texel.
-pub fn add_texel(fit: &GuidedFit, place: Vec3, weight: f32, value: Vec4) -> GuidedFit {
-    let w = place * weight;
+pub fn add_texel(fit: &GuidedFit, position: Vec3, weight: f32, value: Vec4) -> GuidedFit {
+    let w = position * weight;
     GuidedFit {
         total: fit.total + weight,
-        place: fit.place + w,
-        squares: fit.squares + w * place,
-        products: fit.products + w.xxy() * place.yzz(),
+        position: fit.position + w,
+        squares: fit.squares + w * position,
+        products: fit.products + w.xxy() * position.yzz(),
         value: fit.value + value * weight,
         x_value: fit.x_value + value * w.x,
         y_value: fit.y_value + value * w.y,
         z_value: fit.z_value + value * w.z,
         low: fit.low.min(value),
         high: fit.high.max(value),
-        nearest: fit.nearest.min(place.z),
-        farthest: fit.farthest.max(place.z),
+        nearest: fit.nearest.min(position.z),
+        farthest: fit.farthest.max(position.z),
     }
 }
 
 /// Value of the fit at the pixel, clamped to the values of the texels. `fade` is the length of a soft fade, metres.
 pub fn fitted_value(fit: &GuidedFit, fade: f32) -> Vec4 {
-    let mean = fit.place / fit.total;
+    let mean = fit.position / fit.total;
     let value = fit.value / fit.total;
     let held = 0.05 * fade;
     let square = fit.squares / fit.total - mean * mean + vec3(0.02, 0.02, held * held);
@@ -191,15 +191,15 @@ pub fn depth_slope(line: &DepthLine, fade: f32) -> Vec4 {
 
 /// Weights of the four texels around a pixel, as in [`upsample_weights`]: bilinear times a Gaussian of the depth
 /// difference; [`SURFACE_DEPTH_TOLERANCE`] is two sigma. Never zero by depth, and not normalised: the sum is
-/// the share of the texels that saw the pixel's surface.
+/// the fraction of the texels that saw the pixel's surface.
 pub fn surface_weights(fraction: Vec2, depths: Vec4, depth: f32) -> Vec4 {
     let sigmas = (depths - depth) * (2.0 / (SURFACE_DEPTH_TOLERANCE * depth.max(1.0e-6)));
     let gaussian = Vec4::from(sigmas.to_array().map(|s| (-0.5 * s * s).exp()));
     upsample_weights(Upsample::Bilinear, fraction, depths, depth) * (gaussian + 1.0e-4)
 }
 
-/// Share of a value by which [`carried_value`] may lead it out of the range of the texels before it is clamped. At 0, a channel at the
-/// end of its range would stop all others; light and amount are apart by at most this share.
+/// Fraction of a value by which [`carried_value`] may lead it out of the range of the texels before it is clamped. At 0, a
+/// channel at the end of its range would stop all others; light and amount are apart by at most this fraction.
 const SMALL_CHANGE: f32 = 0.05;
 
 /// Mean of four texels, in columns, each carried along its slope to the pixel's depth, as far as all channels stay within the
@@ -218,9 +218,9 @@ pub fn carried_value(weights: Vec4, values: Mat4, slopes: Mat4, depths: Vec4, de
     (mean + change * steps.min_element()).clamp(low, high)
 }
 
-/// Share of the mean over the four texels around a pixel in its value; the rest is a mean over sixteen. `seen`: sum of
+/// Fraction of the mean over the four texels around a pixel in its value; the rest is a mean over sixteen. `seen`: sum of
 /// [`surface_weights`].
-pub fn four_texels_share(seen: f32) -> f32 {
+pub fn four_texels_weight(seen: f32) -> f32 {
     smoothstep_unit((seen - 0.02) / 0.18)
 }
 

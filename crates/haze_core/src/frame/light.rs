@@ -23,7 +23,7 @@ choice! {
 }
 
 choice! {
-    /// Part that a light plays in the lighting of a shot. It names the light for people and tools; the picture does not
+    /// Part that a light plays in the lighting of a shot. It names the light for people and tools; the image does not
     /// depend on it.
     LightRole {
         /// No part of its own.
@@ -35,7 +35,7 @@ choice! {
         Fill = "fill",
         /// Light from behind, which draws the outline of the smoke.
         Rim = "rim",
-        /// Light that is seen in the picture: a lamp, a window, a fire.
+        /// Light that is seen in the image: a lamp, a window, a fire.
         Practical = "practical",
     }
 }
@@ -76,7 +76,7 @@ settings! {
         specular_scatter: f32 = 1.0, number(0.0..=100.0, "");
         /// Lets smoke shade this light, if it is one of the `shadow.lights` brightest. Off: the light shines through all smoke.
         smoke_shadow: bool = true, flag;
-        /// Part that the light plays: key, fill, rim or practical. Names the light; the picture stays as it is.
+        /// Part that the light plays: key, fill, rim or practical. Names the light; the image stays as it is.
         role: LightRole = LightRole::None, choice;
     }
 }

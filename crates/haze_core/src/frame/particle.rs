@@ -22,7 +22,7 @@ pub struct Particle {
     pub amount: f32,
     /// Flipbook frame. Wraps around; a fraction blends with the next frame.
     pub frame: f32,
-    /// Share of the particle's life that has passed, 0..=1.
+    /// Fraction of the particle's life that has passed, 0..=1.
     pub age: f32,
     /// Velocity in world space, metres per second. Read if `sprite.stretch` is above 0.
     pub velocity: Vec3,
@@ -56,9 +56,9 @@ impl Particle {
     pub fn is_valid(&self) -> bool {
         // Comparisons are false for NaN.
         let in_range = |numbers: Vec4| numbers.abs().cmple(Vec4::splat(MAX_MAGNITUDE));
-        let place = in_range(self.position.extend(self.radius));
+        let position = in_range(self.position.extend(self.radius));
         let look = in_range(Vec4::new(self.rotation, self.amount, self.frame, self.age));
-        (place & look & in_range(self.velocity.extend(0.0))).all() && self.radius >= 0.0
+        (position & look & in_range(self.velocity.extend(0.0))).all() && self.radius >= 0.0
     }
 
     /// True if the particle is valid, and its radius and amount are above 0.

@@ -14,7 +14,7 @@ pub struct SpriteExtent {
     corner: f32,
     /// Seconds, and largest ratio, by which sprites are stretched; 0 and 1 if they are not.
     stretch: (f32, f32),
-    /// Speed that counts in place of the particles' own.
+    /// Speed that counts instead of the particles' own.
     speed: Option<f32>,
 }
 

@@ -9,14 +9,14 @@ use crate::error::FieldError;
 use crate::formula::shadow_map::MAX_SHADOW_LAYERS;
 use crate::settings::{DepthSource, Settings, validate};
 
-/// Validates the settings of system `index` for a picture of this size.
-pub fn validate_settings(index: usize, settings: &Settings, picture: UVec2) -> Result<(), FieldError> {
+/// Validates the settings of system `index` for an image of this size.
+pub fn validate_settings(index: usize, settings: &Settings, image: UVec2) -> Result<(), FieldError> {
     settings.validate(|| format!("systems[{index}].settings"))?;
     let accumulate = &settings.accumulate;
     let is_host = accumulate.depth_source == DepthSource::Host && !settings.is_forward();
-    if is_host && accumulate.effective_scale(picture) != 1 {
+    if is_host && accumulate.effective_scale(image) != 1 {
         let field = format!("systems[{index}].settings.accumulate.max_side");
-        let expected = format!("at least {} for this picture with depth_source \"host\"", picture.max_element());
+        let expected = format!("at least {} for this image with depth_source \"host\"", image.max_element());
         return Err(FieldError::new(field, accumulate.max_side, expected));
     }
     Ok(())

@@ -49,7 +49,7 @@ choice! {
 choice! {
     /// Order in which normals are blended; the amount does not depend on it. `docs/order.md` compares them.
     BlendOrder {
-        /// Sprites are blended back to front, as in OTEE. A sprite that passes another in depth changes the picture
+        /// Sprites are blended back to front, as in OTEE. A sprite that passes another in depth changes the image
         /// abruptly, and the edges of the nearest sprites show.
         #[default]
         Sorted = "sorted",
@@ -123,7 +123,7 @@ choice! {
         /// `target` where the ramps in use are smooth at this scale, else `full`.
         #[default]
         Auto = "auto",
-        /// Once per pixel of the picture, from the upsampled normal and amount.
+        /// Once per pixel of the image, from the upsampled normal and amount.
         Full = "full",
         /// Once per texel of the target, then upsampled: a light costs `downscale`² times less. Hard steps in a diffuse
         /// ramp become soft.
@@ -160,7 +160,7 @@ settings! {
         depth_weight: f32 = 0.4, number(0.0..=4.0, "");
         /// Layers that the path `tiled` adds up: the visible ones, or all.
         layers: Traversal = Traversal::default(), choice;
-        /// Pixels of the picture per texel of the target, along each side. Higher: less sharp, and cheaper by the
+        /// Pixels of the image per texel of the target, along each side. Higher: less sharp, and cheaper by the
         /// square.
         downscale: u32 = 2, integer(1..=MAX_SCALE, "pixels");
         /// Choice of the scale: `downscale`, or by the detail of the smoke.
@@ -168,7 +168,7 @@ settings! {
         /// Largest predicted error with the scale mode `auto`: root mean square over the smoke, of the amount 1. Higher:
         /// coarser and cheaper.
         max_error: f32 = 0.005, number(0.001..=0.1, "");
-        /// Most texels along the picture's longer side. Lower raises `downscale` on large pictures.
+        /// Most texels along the image's longer side. Lower raises `downscale` on large images.
         max_side: u32 = 4096, integer(16..=16384, "texels");
         /// Scene depth that sprites are compared with.
         depth_source: DepthSource = DepthSource::default(), choice;
@@ -202,14 +202,14 @@ impl Accumulate {
         self.scale_mode = ScaleMode::Fixed;
     }
 
-    /// Fixed divisor in use: `downscale`, raised until the picture's longer side has at most `max_side` texels.
-    pub fn effective_scale(&self, picture: UVec2) -> u32 {
-        self.downscale.max(self.finest_scale(picture))
+    /// Fixed divisor in use: `downscale`, raised until the image's longer side has at most `max_side` texels.
+    pub fn effective_scale(&self, image: UVec2) -> u32 {
+        self.downscale.max(self.finest_scale(image))
     }
 
-    /// Smallest divisor at which the picture's longer side has at most `max_side` texels.
-    pub fn finest_scale(&self, picture: UVec2) -> u32 {
-        picture.max_element().div_ceil(self.max_side.max(1)).max(1)
+    /// Smallest divisor at which the image's longer side has at most `max_side` texels.
+    pub fn finest_scale(&self, image: UVec2) -> u32 {
+        image.max_element().div_ceil(self.max_side.max(1)).max(1)
     }
 }
 
@@ -219,8 +219,8 @@ mod tests {
 
     #[test]
     fn max_side_raises_the_scale() {
-        let scale = |scale, max_side, picture| {
-            Accumulate { downscale: scale, max_side, ..Accumulate::default() }.effective_scale(picture)
+        let scale = |scale, max_side, image| {
+            Accumulate { downscale: scale, max_side, ..Accumulate::default() }.effective_scale(image)
         };
         assert_eq!(scale(2, 4096, UVec2::new(1920, 1080)), 2);
         assert_eq!(scale(2, 480, UVec2::new(1920, 1080)), 4);

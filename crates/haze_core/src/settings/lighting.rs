@@ -57,7 +57,7 @@ choice! {
 }
 
 choice! {
-    /// Conversion of the amount to coverage, the share of the background that is hidden.
+    /// Conversion of the amount to coverage, the fraction of the background that is hidden.
     CoverageMode {
         /// The amount times `boost`.
         #[default]
@@ -121,10 +121,10 @@ settings! {
     pub struct Fire {
         /// Multiplies the fire ramp. 0: no fire, and no cost. Far above 1: a fire that outshines the scene.
         intensity: f32 = 0.0, number(0.0..=1000.0, "");
-        /// Share by which the thin edge of a sprite is cooler than its middle. 0: even. 1: flames with dark edges.
+        /// Fraction by which the thin edge of a sprite is cooler than its middle. 0: even. 1: flames with dark edges.
         core: f32 = 0.6, number(0.0..=1.0, "");
-        /// Share by which a puff is cooler where it faces the viewer: soot over the glow of its creases, as on a fireball. Not
-        /// with six-way maps.
+        /// Fraction by which a puff is cooler where it faces the viewer: soot over the glow of its creases, as on a fireball.
+        /// Not with six-way maps.
         crust: f32 = 0.0, number(0.0..=1.0, "");
         /// Multiplies the light that the fire casts on smoke and scene. 0: none. A host asks for it, `haze::fire::FireLight`.
         light: f32 = 1.0, number(0.0..=100.0, "");
@@ -164,8 +164,8 @@ settings! {
         size: f32 = 160.0, number(1.0..=8192.0, "pixels");
         /// Multiplies the glow. Higher: brighter. 0 draws no quads.
         intensity: f32 = 1.0, number(0.0..=100.0, "");
-        /// Share of the light's falloff with its distance from the smoke that dims the glow. 0: a point or spot light glows by
-        /// its intensity at one metre, however far it is. 1: by the light that arrives in the middle of the smoke.
+        /// Fraction of the light's falloff with its distance from the smoke that dims the glow. 0: a point or spot light glows
+        /// by its intensity at one metre, however far it is. 1: by the light that arrives in the middle of the smoke.
         falloff: f32 = 0.0, number(0.0..=1.0, "");
     }
 }
@@ -186,8 +186,8 @@ mod tests {
 
     #[test]
     fn glow_keeps_its_share_of_the_views_height() {
-        let share = |height: u32| SpecularScatter::default().size_in_pixels(height) / height as f32;
+        let fraction = |height: u32| SpecularScatter::default().size_in_pixels(height) / height as f32;
         assert!((SpecularScatter::default().size_in_pixels(720) - SpecularScatter::default().size).abs() < 1e-3);
-        assert!((share(2160) - share(90)).abs() < 1e-6);
+        assert!((fraction(2160) - fraction(90)).abs() < 1e-6);
     }
 }

@@ -88,7 +88,7 @@ choice! {
 }
 
 choice! {
-    /// Tonemap of the program's pictures: from the light of a scene, which has no limit, to the colors of a screen. The library
+    /// Tonemap of the program's images: from the light of a scene, which has no limit, to the colors of a screen. The library
     /// changes no color of a host.
     Tonemap {
         /// Contrast of film. Bright colors turn on their way to white: orange fire to yellow, violet to pink.
@@ -127,8 +127,8 @@ choice! {
         /// Depth that sprites are compared with: white at the near side of the box, black beyond the far side. Of the system
         /// in front where several boxes overlap.
         ReducedDepth = "reduced_depth",
-        /// Shares of the first three lights with shadow that reach the smoke, in red, green and blue: what comes through other
-        /// smoke, 2^(-optical depth), and past the scene.
+        /// Fractions of the first three lights with shadow that reach the smoke, in red, green and blue: what comes through
+        /// other smoke, 2^(-optical depth), and past the scene.
         Shadow = "shadow",
         /// The same in the grid of the shadow, on a plane through the middle of the smoke. Dark lines are borders of cells.
         ShadowSlice = "shadow_slice",

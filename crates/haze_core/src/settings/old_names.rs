@@ -12,8 +12,10 @@ struct RenamedField {
     new: &'static str,
 }
 
-const RENAMED_FIELDS: [RenamedField; 1] =
-    [RenamedField { owner: "Accumulate", group: "accumulate", old: "scale", new: "downscale" }];
+const RENAMED_FIELDS: [RenamedField; 2] = [
+    RenamedField { owner: "Accumulate", group: "accumulate", old: "scale", new: "downscale" },
+    RenamedField { owner: "Emitter", group: "emitter", old: "small_share", new: "small_fraction" },
+];
 
 /// Group that has another name now.
 struct RenamedGroup {

@@ -16,9 +16,9 @@ settings! {
     }
 }
 
-/// Share of the budget that the expected cost of a finer scale must stay below. The rest is a margin for the error of
+/// Fraction of the budget that the expected cost of a finer scale must stay below. The rest is a margin for the error of
 /// the estimate: if measurements are off by 20 %, the mean of a block is off by up to 5 %.
-const FINER_SCALE_SHARE: f32 = 0.85;
+const FINER_SCALE_FRACTION: f32 = 0.85;
 
 /// A median above this multiple of the budget makes the scale coarser at once. Noise of 20 % on a load at the budget
 /// stays below it.
@@ -44,7 +44,7 @@ const MAX_FINER_INTERVAL: u32 = 16;
 /// seconds. A finer scale is tried after two more seconds, if its expected cost is at most 85 % of the budget. A
 /// constant load therefore settles on one scale, which is the coarsest limit or costs no more than the budget, and of
 /// which the next finer one costs more than 85 % of it. If a finer scale soon has to be given up again, the next
-/// attempt waits twice as long, up to 17 seconds, so that a load that comes and goes does not make the picture pulse.
+/// attempt waits twice as long, up to 17 seconds, so that a load that comes and goes does not make the image pulse.
 /// (Times are for 60 measurements a second.)
 ///
 /// The cost is modelled as a fixed part and a part that falls with the square of the scale. Their ratio is learned from
@@ -58,8 +58,8 @@ pub struct ScaleBudget {
     /// May be changed at any time.
     pub budget: Budget,
     scale: u32,
-    /// Share of the cost at scale 1 that falls with the square of the scale, 0 to 1. `None` until it has been measured.
-    share: Option<f32>,
+    /// Fraction of the cost at scale 1 that falls with the square of the scale, 0 to 1. `None` until it has been measured.
+    fraction: Option<f32>,
     /// Previous scale and its cost, milliseconds, until the cost of the current one is known.
     before: Option<(u32, f32)>,
     /// True if the current scale is finer than the previous one.
@@ -90,7 +90,7 @@ impl ScaleBudget {
         let mut new = Self {
             budget,
             scale,
-            share: None,
+            fraction: None,
             before: None,
             is_finer: false,
             finer_interval: FINER_INTERVAL,
@@ -126,7 +126,7 @@ impl ScaleBudget {
         }
         let before = self.statistics.mean;
         let Some(mean) = self.statistics.block(median) else { return };
-        self.learn_share(mean);
+        self.learn_fraction(mean);
         // Two blocks in a row: noise does not end a scale that just fits.
         if mean.min(before) > limit && may_be_coarser {
             self.go_coarser(mean);
@@ -136,17 +136,17 @@ impl ScaleBudget {
     }
 
     /// Goes to the finest scale that is expected to fit, but to twice the current one at most, because the learned
-    /// share may not hold beyond.
+    /// fraction may not hold beyond.
     fn go_coarser(&mut self, ms: f32) {
-        self.learn_share(ms);
+        self.learn_fraction(ms);
         if self.is_finer {
             let did_last = self.statistics.blocks >= MAX_FINER_INTERVAL;
             self.finer_interval =
                 if did_last { FINER_INTERVAL } else { MAX_FINER_INTERVAL.min(2 * self.finer_interval) };
         }
         let last = self.limits().1.min(2 * self.scale);
-        // If the share is unknown, all of the cost is taken to fall with the scale.
-        let cost = |scale: &u32| ms * relative_cost(self.share.unwrap_or(1.0), self.scale, *scale);
+        // If the fraction is unknown, all of the cost is taken to fall with the scale.
+        let cost = |scale: &u32| ms * relative_cost(self.fraction.unwrap_or(1.0), self.scale, *scale);
         let scale = (self.scale + 1..=last).find(|scale| cost(scale) <= self.budget.milliseconds);
         self.go_to(scale.unwrap_or(last), ms);
     }
@@ -155,10 +155,11 @@ impl ScaleBudget {
     /// there is none.
     fn try_finer(&mut self, ms: f32) {
         let peak = std::mem::take(&mut self.statistics.peak);
-        // If the share is unknown, a finer scale is taken to be free, and a single step measures it.
-        let (share, first) = self.share.map_or((0.0, self.scale - 1), |share| (share, self.scale.div_ceil(2)));
+        // If the fraction is unknown, a finer scale is taken to be free, and a single step measures it.
+        let (fraction, first) =
+            self.fraction.map_or((0.0, self.scale - 1), |fraction| (fraction, self.scale.div_ceil(2)));
         let fits = |scale: &u32| {
-            peak * relative_cost(share, self.scale, *scale) <= FINER_SCALE_SHARE * self.budget.milliseconds
+            peak * relative_cost(fraction, self.scale, *scale) <= FINER_SCALE_FRACTION * self.budget.milliseconds
         };
         if let Some(scale) = (first.max(self.limits().0)..self.scale).find(fits) {
             self.go_to(scale, ms);
@@ -172,14 +173,14 @@ impl ScaleBudget {
         self.statistics = ScaleStatistics::default();
     }
 
-    /// Learns the share of the cost that falls with the scale, from the costs of the previous scale and the current
+    /// Learns the fraction of the cost that falls with the scale, from the costs of the previous scale and the current
     /// one.
-    fn learn_share(&mut self, ms: f32) {
+    fn learn_fraction(&mut self, ms: f32) {
         let Some((scale, ms_before)) = self.before.take() else { return };
         let [before, now] = [scale, self.scale].map(|scale| 1.0 / (scale * scale) as f32);
         // Between no dependence on the scale and full dependence.
         let ratio = (ms / ms_before).clamp(f32::min(1.0, now / before), f32::max(1.0, now / before));
-        self.share = Some((1.0 - ratio) / (1.0 - now - ratio * (1.0 - before)));
+        self.fraction = Some((1.0 - ratio) / (1.0 - now - ratio * (1.0 - before)));
     }
 
     /// Scale limits of the budget, made valid.
@@ -227,8 +228,8 @@ impl ScaleStatistics {
     }
 }
 
-/// Cost at scale `to` relative to the cost at `from`, if `share` of it falls with the square of the scale.
-fn relative_cost(share: f32, from: u32, to: u32) -> f32 {
-    let cost = |scale: u32| 1.0 - share + share / (scale * scale) as f32;
+/// Cost at scale `to` relative to the cost at `from`, if `fraction` of it falls with the square of the scale.
+fn relative_cost(fraction: f32, from: u32, to: u32) -> f32 {
+    let cost = |scale: u32| 1.0 - fraction + fraction / (scale * scale) as f32;
     cost(to) / cost(from)
 }

@@ -19,7 +19,7 @@ settings! {
         /// The fourth and further lights shade smoke only with `by_depth`: their shadow is looked up at the mean depth of
         /// the smoke at each pixel, that of the first three at each sprite.
         lights: u32 = 3, integer(1..=15, "");
-        /// Lights the smoke at its mean depth at each pixel, in place of one plane for all pixels: a lamp inside the smoke
+        /// Lights the smoke at its mean depth at each pixel, instead of one plane for all pixels: a lamp inside the smoke
         /// lights what is near it. At a `strength` above 0, the scene shades the smoke too, and beams stand in dust: its shadow
         /// comes from a host's shadow maps, `FrameInput::shadow_maps`. One more texture is accumulated, at any `strength`: a
         /// host's own passes may read the depth of the smoke there.

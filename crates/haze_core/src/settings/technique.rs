@@ -93,8 +93,8 @@ settings! {
         /// long. Thin ones are at least a texel wide, and fainter in return. Higher: longer sparks and tongues of flame. 0: none, and
         /// no cost. Spheres are not stretched.
         stretch: f32 = 0.0, number(0.0..=10.0, "s");
-        /// Velocity, in world space, by which sprites are stretched in place of their own: upright tongues of flame, rain. 0, 0, 0:
-        /// their own.
+        /// Velocity, in world space, by which sprites are stretched instead of their own: upright tongues of flame, rain. 0, 0,
+        /// 0: their own.
         #[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))]
         stretch_axis: Vec3 = Vec3::ZERO, vector(-1.0e3..=1.0e3, "m/s");
         /// Largest length of a stretched sprite, in lengths of the sprite at rest. Lower: fast sprites stay compact.

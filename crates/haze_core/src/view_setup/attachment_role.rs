@@ -19,7 +19,7 @@ pub enum AttachmentRole {
     Weights,
     /// Weighted optical depths towards three lights in rgb, sum of weights in a.
     OpticalDepths,
-    /// Weighted depth, as a share of the system's range of depths, and its square, in rg; sum of weights in a.
+    /// Weighted depth, as a fraction of the system's range of depths, and its square, in rg; sum of weights in a.
     Depth,
     /// Weighted heat, and its square, in rg; sum of weights in a.
     Heat,

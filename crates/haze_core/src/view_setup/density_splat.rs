@@ -6,7 +6,7 @@ use glam::{UVec3, Vec3};
 use crate::formula::density_grid::{
     bump_radius, cell_optical_depth, density_steps, mean_optical_depth, optical_depth_of_steps,
 };
-use crate::formula::grain::{kept_share, sprite_erosion};
+use crate::formula::grain::{kept_fraction, sprite_erosion};
 use crate::formula::uniforms::SystemUniform;
 use crate::frame::Particle;
 
@@ -39,7 +39,7 @@ pub fn density_radius(system: &SystemUniform, particle: &Particle) -> f32 {
 /// Mean optical depth over that square, as it casts shadow.
 pub fn sprite_optical_depth(system: &SystemUniform, particle: &Particle) -> f32 {
     let amount = particle.shown_amount() * system.opacity;
-    let kept = kept_share(system.eroded_share, erosion_of(system, particle));
+    let kept = kept_fraction(system.eroded_fraction, erosion_of(system, particle));
     let depth = kept * mean_optical_depth(amount, system.mean_alpha, system.peak_alpha);
     system.shadow_density * depth / (system.density_reach * system.density_reach)
 }

@@ -59,24 +59,24 @@ impl DrawingOrder {
         }
         let digit =
             |key: u64, round: usize| (key >> (32 + DIGIT_BITS * round as u32)) as usize & ((1 << DIGIT_BITS) - 1);
-        let mut places = [[0_usize; 1 << DIGIT_BITS]; DIGITS];
+        let mut positions = [[0_usize; 1 << DIGIT_BITS]; DIGITS];
         for &key in keys.iter() {
-            (0..DIGITS).for_each(|round| places[round][digit(key, round)] += 1);
+            (0..DIGITS).for_each(|round| positions[round][digit(key, round)] += 1);
         }
         sorted.resize(keys.len(), 0);
-        for (round, places) in places.iter_mut().enumerate() {
+        for (round, positions) in positions.iter_mut().enumerate() {
             // A round in which all keys have the same digit moves nothing.
-            if places[digit(keys[0], round)] == keys.len() {
+            if positions[digit(keys[0], round)] == keys.len() {
                 continue;
             }
             let mut before = 0;
-            for place in places.iter_mut() {
-                before += std::mem::replace(place, before);
+            for position in positions.iter_mut() {
+                before += std::mem::replace(position, before);
             }
             for &key in keys.iter() {
-                let place = &mut places[digit(key, round)];
-                sorted[*place] = key;
-                *place += 1;
+                let position = &mut positions[digit(key, round)];
+                sorted[*position] = key;
+                *position += 1;
             }
             std::mem::swap(keys, sorted);
         }

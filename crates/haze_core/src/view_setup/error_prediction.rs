@@ -8,7 +8,7 @@ use super::sprite_projector::{ProjectedSprite, SpriteProjector, TexelGrid};
 use super::system_setup::SystemSetup;
 use crate::assets::material_assets::MaterialInfo;
 use crate::assets::sprite::sprite_detail::LostDetail;
-use crate::formula::grain::octave_share;
+use crate::formula::grain::octave_fraction;
 use crate::frame::Particle;
 use crate::settings::{BlendOrder, COARSEST_AUTO_SCALE, Settings};
 
@@ -69,7 +69,7 @@ impl ErrorPrediction {
         }
         let count = step as f64 * f64::from(particles_per_sample);
         let of_box = setup.pixels.as_dvec2().element_product().max(1.0);
-        // Sprites at random places cover this much of their box.
+        // Sprites at random positions cover this much of their box.
         let covered = (of_box * (1.0 - (-count * areas / of_box).exp())).max(1.0e-9);
         let depth = count * depths / covered;
         let [by_amount, by_normal] = visibility(depth, settings.order());
@@ -92,8 +92,8 @@ impl ErrorPrediction {
     }
 }
 
-/// Mean square of the share with which a sprite's amount, and its normal, show in the picture. `depth`: mean optical depth of
-/// the smoke.
+/// Mean square of the fraction with which a sprite's amount, and its normal, show in the image. `depth`: mean optical depth
+/// of the smoke.
 fn visibility(depth: f64, order: BlendOrder) -> [f64; 2] {
     let mean = |depth: f64| if depth > 1.0e-3 { (1.0 - (-depth).exp()) / depth } else { 1.0 };
     // The amount shows through all other sprites. Smoke is uneven: the mean over depths from 0 to twice the mean one.
@@ -147,12 +147,12 @@ fn interpolation_error(fineness: f32) -> f32 {
     (0.5 * fineness).min(1.0).powf(INTERPOLATION_POWER)
 }
 
-/// Share of the grain that a target loses, of its deviation. `fineness`: texels of the noise per texel of the target.
+/// Fraction of the grain that a target loses, of its deviation. `fineness`: texels of the noise per texel of the target.
 fn lost_grain(fineness: f32, scale: f32, settings: &Settings) -> f32 {
     let lost = |octave: i32| {
         let fine = fineness * 3.0_f32.powi(octave);
-        let full = octave_share(fine / scale);
-        let shown = octave_share(fine);
+        let full = octave_fraction(fine / scale);
+        let shown = octave_fraction(fine);
         0.5_f32.powi(octave) * (full - shown + shown * interpolation_error(fine))
     };
     (0..settings.grain_octaves() as i32).map(|octave| lost(octave).powi(2)).sum::<f32>().sqrt()

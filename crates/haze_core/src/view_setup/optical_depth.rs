@@ -13,7 +13,7 @@ use crate::settings::{Settings, Technique};
 /// Mean optical depth of a sprite over its square, relative to its center: sprites thin out towards their borders.
 const MEAN_TO_CENTER_RATIO: f32 = 0.375;
 
-/// Number of particles from which a share stands for all: sums over so many vary by less than a hundredth.
+/// Number of particles from which a fraction stands for all: sums over so many vary by less than a hundredth.
 const ENOUGH: usize = 16_384;
 
 /// Assumed optical depth from the near to the far side of a system whose sprites are on the GPU.
@@ -42,24 +42,24 @@ pub(super) fn optical_depths(
         let (optical_depth, radius) = center_optical_depth_and_radius(particle, settings);
         let in_front = ((-position.z - view.depth.near) / radius).clamp(0.0, 1.0);
         let area = 4.0 * radius * radius;
-        let share = MEAN_TO_CENTER_RATIO * optical_depth * area * in_front;
-        let place = knot_coordinate(-position.z, extent.near, extent.far) * (OPTICAL_DEPTH_KNOTS - 1) as f32;
-        let low = (place as usize).min(OPTICAL_DEPTH_KNOTS - 2);
-        knots[low] += share * (1.0 - (place - low as f32));
-        knots[low + 1] += share * (place - low as f32);
+        let fraction = MEAN_TO_CENTER_RATIO * optical_depth * area * in_front;
+        let knot = knot_coordinate(-position.z, extent.near, extent.far) * (OPTICAL_DEPTH_KNOTS - 1) as f32;
+        let low = (knot as usize).min(OPTICAL_DEPTH_KNOTS - 2);
+        knots[low] += fraction * (1.0 - (knot - low as f32));
+        knots[low + 1] += fraction * (knot - low as f32);
 
         let across = position.xy().as_dvec2();
-        let share = f64::from(share);
-        total += share;
-        sum += across * share;
-        squares += (across * across + f64::from(radius * radius) / 3.0) * share;
+        let fraction = f64::from(fraction);
+        total += fraction;
+        sum += across * fraction;
+        squares += (across * across + f64::from(radius * radius) / 3.0) * fraction;
     }
     // NaN comes from sprites of size 0.
     if total.is_nan() || total <= 0.0 {
-        let of_place = |knot: usize| {
+        let of_knot = |knot: usize| {
             (knot as f32 / (OPTICAL_DEPTH_KNOTS - 1) as f32 * 2.0 - 0.5).clamp(0.0, 1.0) * ASSUMED_OPTICAL_DEPTH
         };
-        return pack(std::array::from_fn(of_place));
+        return pack(std::array::from_fn(of_knot));
     }
     // Approximates the smoke's outline by a rectangle: the variance along a side is its squared length divided by 12.
     let variance = (squares / total - (sum / total).powf(2.0)).max(DVec2::splat(1.0e-12));

@@ -44,11 +44,11 @@ impl WorldBox {
         Self { low: self.low.min(other.low), high: self.high.max(other.high) }
     }
 
-    /// Extends the box to a share of the way to the sides of another that lie outside.
-    fn extended(self, other: Self, share: f32) -> Self {
+    /// Extends the box to a fraction of the way to the sides of another that lie outside.
+    fn extended(self, other: Self, fraction: f32) -> Self {
         let Self { low, high } = self;
         let union = self.union(other);
-        Self { low: low + (union.low - low) * share, high: high + (union.high - high) * share }
+        Self { low: low + (union.low - low) * fraction, high: high + (union.high - high) * fraction }
     }
 
     fn bounds(self) -> Bounds {

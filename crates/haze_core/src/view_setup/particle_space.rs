@@ -19,7 +19,7 @@ pub struct ParticleSpace {
 impl ParticleSpace {
     /// `world_from_particles`: rotation, translation and a uniform scale.
     pub fn new(view: &ViewGeometry, world_from_particles: &Mat4) -> Self {
-        // f64, because the translations of a far place cancel out.
+        // f64, because the translations of a far position cancel out.
         let view_from_particles = view.view_from_world.as_dmat4() * world_from_particles.as_dmat4();
         Self {
             world_from_particles: *world_from_particles,

@@ -69,13 +69,13 @@ pub struct TargetRect {
     /// First texel, on the grid whose texel (i, j) covers the pixels i·scale .. (i+1)·scale.
     pub origin: IVec2,
     pub size: UVec2,
-    /// Pixels of the picture per texel, along each side.
+    /// Pixels of the image per texel, along each side.
     pub scale: u32,
 }
 
 /// Returns the texels that an upsampler can read for the pixels of a rectangle.
-pub(super) fn target_rect(first: UVec2, pixels: UVec2, scale: u32, picture: UVec2) -> TargetRect {
-    let grid = UVec2::new(picture.x.div_ceil(scale), picture.y.div_ceil(scale));
+pub(super) fn target_rect(first: UVec2, pixels: UVec2, scale: u32, image: UVec2) -> TargetRect {
+    let grid = UVec2::new(image.x.div_ceil(scale), image.y.div_ceil(scale));
     // Two texels more on every side: the widest footprint of an upsampler at a border pixel.
     let border = UVec2::splat(2);
     let last = first + pixels;
@@ -121,14 +121,14 @@ mod tests {
 
     #[test]
     fn target_rectangle_contains_every_bilinear_footprint() {
-        let picture = UVec2::new(641, 359);
+        let image = UVec2::new(641, 359);
         for scale in 1..=16 {
             let bounds = ProjectedBounds { near: 1.0, far: 2.0, min: UVec2::new(100, 50), max: UVec2::new(301, 200) };
-            let rect = target_rect(bounds.min, bounds.max - bounds.min, scale, picture);
+            let rect = target_rect(bounds.min, bounds.max - bounds.min, scale, image);
             for (pixel, edge) in [(bounds.min, 0.0), (bounds.max - 1, 1.0)] {
                 let texel = (pixel.as_vec2() + 0.5) / scale as f32 - 0.5;
                 let texel = (texel.floor() + edge).as_ivec2();
-                let grid = UVec2::new(picture.x.div_ceil(scale), picture.y.div_ceil(scale)).as_ivec2();
+                let grid = UVec2::new(image.x.div_ceil(scale), image.y.div_ceil(scale)).as_ivec2();
                 let texel = texel.clamp(IVec2::ZERO, grid - 1);
                 let inside = texel - rect.origin;
                 assert!(inside.cmpge(IVec2::ZERO).all() && inside.cmplt(rect.size.as_ivec2()).all(), "scale {scale}");

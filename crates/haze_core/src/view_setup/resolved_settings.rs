@@ -33,7 +33,7 @@ impl Support {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ResolvedSettings {
     settings: Settings,
-    /// Pixels of the picture per texel of the target, along each side; before `auto` has chosen, the fixed scale.
+    /// Pixels of the image per texel of the target, along each side; before `auto` has chosen, the fixed scale.
     pub scale: u32,
     /// Finest scale that `auto` may choose.
     pub finest_scale: u32,
@@ -42,12 +42,12 @@ pub struct ResolvedSettings {
 }
 
 impl ResolvedSettings {
-    /// `particle_scale`: metres per unit of the particles' space; sprite sizes grow by it. `picture`: size of the view,
+    /// `particle_scale`: metres per unit of the particles' space; sprite sizes grow by it. `image`: size of the view,
     /// pixels. `frame_count`: number of frames of the sprite. `ramp_steps`: of the material.
     pub fn new(
         settings: &Settings,
         particle_scale: f32,
-        picture: UVec2,
+        image: UVec2,
         frame_count: f32,
         ramp_steps: &RampSteps,
         support: Support,
@@ -55,8 +55,8 @@ impl ResolvedSettings {
         let lighting = if support.six_way { settings.lighting } else { Lighting::Normals };
         let mut sprite = settings.sprite.for_frames(frame_count);
         sprite.size *= particle_scale;
-        let scale = settings.accumulate.effective_scale(picture);
-        let finest_scale = settings.accumulate.finest_scale(picture);
+        let scale = settings.accumulate.effective_scale(image);
+        let finest_scale = settings.accumulate.finest_scale(image);
         let mut settings = Settings { lighting, sprite, ..*settings };
         let has_several = AttachmentSet::of(&settings).iter().count() > 1;
         if has_several && !support.independent_blend {

@@ -11,7 +11,7 @@ use crate::assets::material_assets::MaterialInfo;
 use crate::frame::Particle;
 use crate::settings::COARSEST_AUTO_SCALE;
 
-/// Share of the largest error that the predicted one may be above or below before the scale changes: a moving camera does
+/// Fraction of the largest error that the predicted one may be above or below before the scale changes: a moving camera does
 /// not make it change back and forth.
 const MARGIN: f32 = 0.15;
 
@@ -66,7 +66,7 @@ impl ScaleChoice {
             let fits = |scale: &u32| prediction.at(*scale) <= limit;
             (finest + 1..=COARSEST_AUTO_SCALE).take_while(fits).last().unwrap_or(finest)
         };
-        let [fine, coarse] = [1.0 - MARGIN, 1.0 + MARGIN].map(|share| coarsest_within(share * max_error));
+        let [fine, coarse] = [1.0 - MARGIN, 1.0 + MARGIN].map(|fraction| coarsest_within(fraction * max_error));
         let scale = before.map_or_else(|| coarsest_within(max_error), |before| before.clamp(fine, coarse));
         let error = |scale| (scale <= COARSEST_AUTO_SCALE).then(|| prediction.at(scale));
         Self { scale, error: error(scale), coarser_error: error(scale + 1), max_error }

@@ -60,7 +60,7 @@ impl SmokeGrid {
         (1.0 / self.cell) as f32
     }
 
-    fn place(&self, world: Vec3) -> Vec3 {
+    fn grid_position(&self, world: Vec3) -> Vec3 {
         ((world.as_dvec3() - self.origin) / self.cell).as_vec3()
     }
 }
@@ -134,7 +134,7 @@ impl SmokeShadow {
             Some(light) if light.kind == LightKind::Directional => {
                 (-light.direction.normalize_or(Vec3::NEG_Y)).extend(1.0)
             }
-            Some(light) => grid.place(light.position).extend(0.0),
+            Some(light) => grid.grid_position(light.position).extend(0.0),
         });
         let mut radii = [Vec4::ZERO; LIGHT_BLOCKS];
         for (slot, light) in chosen.iter().enumerate().filter_map(|(slot, index)| Some((slot, lights.get((*index)?)?)))

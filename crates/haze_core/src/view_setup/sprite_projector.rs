@@ -11,7 +11,7 @@ use crate::formula::soft_fade::near_fade;
 use crate::formula::sprite::{
     FlipbookFrames, animation_frames, offset_frames, sprite_frame, sprite_lod, trimmed_corner,
 };
-use crate::formula::stretch::{MIN_RADIUS, sprite_stretch, stretched, widened_share};
+use crate::formula::stretch::{MIN_RADIUS, sprite_stretch, stretched, widened_fraction};
 use crate::formula::technique::sphere_axis_bounds;
 use crate::formula::uniforms::{SystemUniform, ViewUniform};
 use crate::formula::view::{pixel_from_ndc, pixels_per_metre};
@@ -52,8 +52,8 @@ pub struct ProjectedSprite {
 pub struct SpriteCoverage<'p> {
     /// Number of texels.
     pub texels: f64,
-    /// Share of the sprite's square that is not trimmed; 1 for spheres.
-    pub share: f64,
+    /// Fraction of the sprite's square that is not trimmed; 1 for spheres.
+    pub fraction: f64,
     /// The sprite in the view.
     pub sprite: ProjectedSprite,
     /// The particle that it shows.
@@ -127,7 +127,7 @@ impl SpriteProjector<'_> {
             let thin = self.stretch(particle, center, radius);
             let wide = radius.max(MIN_RADIUS / (pixels * texels_per_pixel));
             stretch = self.stretch(particle, center, wide);
-            amount *= widened_share(radius, wide, thin, stretch);
+            amount *= widened_fraction(radius, wide, thin, stretch);
             radius = wide;
         }
         let diameter = 2.0 * radius * pixels * texels_per_pixel;
@@ -215,18 +215,18 @@ impl SpriteProjector<'_> {
         let mut scratch = [Vec::with_capacity(8), Vec::with_capacity(8)];
         particles.filter_map(move |particle| {
             let sprite = self.project(particle, grid.scale.recip())?;
-            let (corners, share) = if self.technique.is_sphere() {
+            let (corners, fraction) = if self.technique.is_sphere() {
                 let (min, max) = self.sphere_rectangle(&sprite, grid.scale.recip());
                 ([min, Vec2::new(max.x, min.y), max, Vec2::new(min.x, max.y)], 1.0)
             } else {
                 let reach = self.trimmed_extent(&sprite);
-                let share = 0.25 * (reach.x + reach.z) * (reach.y + reach.w);
-                (self.corners(&sprite, reach, particle.rotation), f64::from(share))
+                let fraction = 0.25 * (reach.x + reach.z) * (reach.y + reach.w);
+                (self.corners(&sprite, reach, particle.rotation), f64::from(fraction))
             };
             let texels = corners.map(|pixel| pixel / grid.scale - grid.origin);
             Some(SpriteCoverage {
                 texels: area_within(texels, grid.size.as_vec2(), &mut scratch),
-                share,
+                fraction,
                 sprite,
                 particle,
             })
@@ -239,8 +239,8 @@ impl SpriteProjector<'_> {
         let along = if self.view.orthographic > 0.5 { 1.0 } else { -center.z };
         let turn = Vec2::from_angle(rotation) * sprite.radius;
         [Vec2::new(1.0, 1.0), Vec2::new(-1.0, 1.0), Vec2::new(-1.0, -1.0), Vec2::new(1.0, -1.0)].map(|corner| {
-            let place = stretched(turn.rotate(trimmed_corner(corner, reach)), sprite.stretch);
-            let ray = (center.xy() + place) / along;
+            let position = stretched(turn.rotate(trimmed_corner(corner, reach)), sprite.stretch);
+            let ray = (center.xy() + position) / along;
             pixel_from_ndc(self.ndc(ray), self.view.size)
         })
     }

@@ -211,9 +211,9 @@ pub fn system_setup(view: &ViewGeometry, targets: UVec2, system: &SystemInput<'_
 }
 
 /// Uniforms with the placement of the target.
-fn target_uniform(rect: &TargetRect, picture: UVec2, uniform: SystemUniform) -> SystemUniform {
+fn target_uniform(rect: &TargetRect, image: UVec2, uniform: SystemUniform) -> SystemUniform {
     SystemUniform {
-        target_from_ndc: target_from_ndc(rect, picture),
+        target_from_ndc: target_from_ndc(rect, image),
         target_origin: rect.origin.as_vec2(),
         target_size: rect.size.as_vec2(),
         scale: rect.scale,
@@ -232,7 +232,7 @@ pub fn caster_uniform(system: &SystemInput<'_>) -> SystemUniform {
         alive_count: u32::MAX,
         mean_alpha: material.density.mean_alpha,
         peak_alpha: material.density.peak_alpha,
-        eroded_share: material.density.eroded_share,
+        eroded_fraction: material.density.eroded_fraction,
         density_reach: material.density.reach,
         grid_from_view: shadow.map_or(Mat4::IDENTITY, |shadow| shadow.grid_from_view),
         grid_size: shadow.map_or(Vec3::ONE, |shadow| shadow.grid.size.as_vec3()),
@@ -278,9 +278,9 @@ fn noise_offset(view: &ViewGeometry, settings: &Settings, up: Vec3, time: f64) -
     let volumetric = &settings.volumetric;
     let seconds = if settings.debug.freeze_animation { 0.0 } else { time };
     let eye = view.view_from_world.as_dmat4().inverse().w_axis.truncate();
-    let place = eye - up.as_dvec3() * (f64::from(volumetric.scroll_speed) * seconds);
+    let position = eye - up.as_dvec3() * (f64::from(volumetric.scroll_speed) * seconds);
     let size = f64::from(volumetric.noise_size);
-    DVec3::from(place.to_array().map(|axis| axis.rem_euclid(size))).as_vec3()
+    DVec3::from(position.to_array().map(|axis| axis.rem_euclid(size))).as_vec3()
 }
 
 /// Returns scale (xy) and offset (zw) from the view's NDC to the target's.
@@ -288,8 +288,8 @@ fn noise_offset(view: &ViewGeometry, settings: &Settings, up: Vec3, time: f64) -
 /// A pixel p is at texel p / scale − origin of the target. In x, with p = (ndc/2 + 1/2)·W and target NDC = 2·t/w − 1:
 /// scale = W / (s·w), offset = (W/s − 2·origin) / w − 1. In y, which points up in NDC and down in texels, the offset
 /// has the opposite sign.
-fn target_from_ndc(rect: &TargetRect, picture: UVec2) -> Vec4 {
-    let texels = picture.as_vec2() / rect.scale as f32;
+fn target_from_ndc(rect: &TargetRect, image: UVec2) -> Vec4 {
+    let texels = image.as_vec2() / rect.scale as f32;
     let size = rect.size.as_vec2();
     let offset = (texels - 2.0 * rect.origin.as_vec2()) / size - Vec2::ONE;
     Vec4::new(texels.x / size.x, texels.y / size.y, offset.x, -offset.y)

@@ -46,15 +46,15 @@ fn halved(image: &Image<Vec4>) -> Image<Vec4> {
 
 /// Value of a coarser level at a texel of the next finer one, bilinear.
 fn between(coarse: &Image<Vec3>, at: UVec2) -> Vec3 {
-    let place = (at.as_vec2() - 0.5) * 0.5;
-    let low = place.floor();
-    let share = place - place.floor();
+    let position = (at.as_vec2() - 0.5) * 0.5;
+    let low = position.floor();
+    let fraction = position - position.floor();
     let load = |x: f32, y: f32| {
         let last = coarse.size.as_ivec2() - 1;
         coarse.load(glam::Vec2::new(x, y).as_ivec2().clamp(glam::IVec2::ZERO, last))
     };
-    let row = |y: f32| load(low.x, y).lerp(load(low.x + 1.0, y), share.x);
-    row(low.y).lerp(row(low.y + 1.0), share.y)
+    let row = |y: f32| load(low.x, y).lerp(load(low.x + 1.0, y), fraction.x);
+    row(low.y).lerp(row(low.y + 1.0), fraction.y)
 }
 
 #[cfg(test)]

@@ -16,7 +16,7 @@ pub struct FrameLayers {
     pub light: Image<Vec4>,
     /// View space.
     pub normals: Image<Vec4>,
-    /// Way until the next frame: x to the right, y up, shares of the frame's width and height.
+    /// Way until the next frame: x to the right, y up, fractions of the frame's width and height.
     pub motion: Image<Vec4>,
     /// Exposed.
     pub fire: Option<Image<Vec4>>,
@@ -37,10 +37,10 @@ fn exposed(mut image: Image<Vec4>, shot: &Shot) -> Image<Vec4> {
     image
 }
 
-/// Mixes two layers. `share`: of `other`, 0 to 1.
-pub fn mixed(mut image: Image<Vec4>, other: &Image<Vec4>, share: f32) -> Image<Vec4> {
+/// Mixes two layers. `fraction`: of `other`, 0 to 1.
+pub fn mixed(mut image: Image<Vec4>, other: &Image<Vec4>, fraction: f32) -> Image<Vec4> {
     let pairs = image.texels.iter_mut().zip(&other.texels);
-    pairs.for_each(|(texel, other)| *texel = texel.lerp(*other, share));
+    pairs.for_each(|(texel, other)| *texel = texel.lerp(*other, fraction));
     image
 }
 
@@ -73,9 +73,9 @@ impl FrameLayers {
         })
     }
 
-    /// Mixes two frames. `share`: of `other`, 0 to 1.
-    pub fn mixed(self, other: &Self, share: f32) -> Self {
-        let mix = |image, other| mixed(image, other, share);
+    /// Mixes two frames. `fraction`: of `other`, 0 to 1.
+    pub fn mixed(self, other: &Self, fraction: f32) -> Self {
+        let mix = |image, other| mixed(image, other, fraction);
         Self {
             light: mix(self.light, &other.light),
             normals: mix(self.normals, &other.normals),

@@ -108,8 +108,8 @@ impl FlipbookExport {
                 return Ok(layers);
             }
             // The frame after the last is the first, so that it follows the last.
-            let share = 1.0 - index as f32 / fade as f32;
-            Ok(layers.mixed(&at(count + index, done + 1).await?, share))
+            let fraction = 1.0 - index as f32 / fade as f32;
+            Ok(layers.mixed(&at(count + index, done + 1).await?, fraction))
         };
         let FlipbookOptions { engine, cells, emission, has_six_way, effort, .. } = options;
         let contains_fire = burns && emission == Emission::Contained;
@@ -125,8 +125,8 @@ impl FlipbookExport {
                 if index >= fade {
                     return Ok::<_, Error>(light);
                 }
-                let share = 1.0 - (index as f32 + 0.5) / fade as f32;
-                Ok(mixed(light, &at(count + index).await?, share))
+                let fraction = 1.0 - (index as f32 + 0.5) / fade as f32;
+                Ok(mixed(light, &at(count + index).await?, fraction))
             };
             let light = progress.show(image_label(done(index), all), light).await?;
             Ok::<_, Error>(layout.encoded(&light))

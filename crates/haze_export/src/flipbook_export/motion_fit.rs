@@ -8,8 +8,8 @@
 use glam::{IVec2, Vec2, Vec4, Vec4Swizzles};
 use haze_core::assets::image::Image;
 
-/// Lengths that are tried, as shares of the way of the particles. More lengths lower the error by less than a hundredth.
-const SHARES: [f32; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
+/// Lengths that are tried, as fractions of the way of the particles. More lengths lower the error by less than a hundredth.
+const FRACTIONS: [f32; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
 
 /// Squared error that a vector of full length must save, or rest is as good: one code of 8 bits.
 const FULL_LENGTH_COST: f32 = 1.0 / (255.0 * 255.0);
@@ -24,26 +24,26 @@ pub struct HalfwayImages<'a> {
 }
 
 /// Shortens each vector to the length at which the frame, moved by half of it, is most like the images halfway to its neighbors.
-/// Without such images all vectors are 0. `motion`: x to the right, y up, shares of the frame; alpha stays. `frame`: encoded,
-/// multiplied by opacity.
+/// Without such images all vectors are 0. `motion`: x to the right, y up, fractions of the frame; alpha stays. `frame`:
+/// encoded, multiplied by opacity.
 pub fn followed(motion: &Image<Vec4>, frame: &Image<Vec4>, halfway: HalfwayImages<'_>) -> Image<Vec4> {
     let size = motion.size.as_vec2();
     let mut followed = motion.clone();
     // No windows around texels: sparks are a texel wide, and the smoke beside them moves otherwise.
     followed.for_each(|at, way| {
-        let error = |share: f32| {
-            let half = way.xy() * size * Vec2::new(0.5, -0.5) * share;
-            let difference = |image: Option<&Image<Vec4>>, place: Vec2| {
-                image.map_or(0.0, |image| (sample(frame, place) - image.load(at.as_ivec2())).length_squared())
+        let error = |fraction: f32| {
+            let half = way.xy() * size * Vec2::new(0.5, -0.5) * fraction;
+            let difference = |image: Option<&Image<Vec4>>, position: Vec2| {
+                image.map_or(0.0, |image| (sample(frame, position) - image.load(at.as_ivec2())).length_squared())
             };
             let before = difference(halfway.before, at.as_vec2() + half);
             let after = difference(halfway.after, at.as_vec2() - half);
-            before + after + FULL_LENGTH_COST * share
+            before + after + FULL_LENGTH_COST * fraction
         };
-        let errors = SHARES.map(|share| (share, error(share)));
+        let errors = FRACTIONS.map(|fraction| (fraction, error(fraction)));
         let best = errors.into_iter().min_by(|(_, a), (_, b)| a.total_cmp(b));
-        let share = best.map_or(0.0, |(share, _)| share);
-        *way = (way.xyz() * share).extend(way.w);
+        let fraction = best.map_or(0.0, |(fraction, _)| fraction);
+        *way = (way.xyz() * fraction).extend(way.w);
     });
     followed
 }
@@ -62,13 +62,13 @@ pub fn kept_inside(motion: &Image<Vec4>) -> Image<Vec4> {
     kept
 }
 
-/// Bilinear filter; `place` in texels, 0 at the center of the first.
-fn sample(image: &Image<Vec4>, place: Vec2) -> Vec4 {
-    let low = place.floor();
-    let share = place - place.floor();
+/// Bilinear filter; `position` in texels, 0 at the center of the first.
+fn sample(image: &Image<Vec4>, position: Vec2) -> Vec4 {
+    let low = position.floor();
+    let fraction = position - position.floor();
     let last = image.size.as_ivec2() - 1;
     let load = |x: i32, y: i32| image.load((low.as_ivec2() + IVec2::new(x, y)).clamp(IVec2::ZERO, last));
-    load(0, 0).lerp(load(1, 0), share.x).lerp(load(0, 1).lerp(load(1, 1), share.x), share.y)
+    load(0, 0).lerp(load(1, 0), fraction.x).lerp(load(0, 1).lerp(load(1, 1), fraction.x), fraction.y)
 }
 
 #[cfg(test)]

@@ -40,7 +40,7 @@ pub struct FlipbookNumbers {
     pub normal_green: Direction,
     /// Direction of a way whose green is full.
     pub motion_green: Direction,
-    /// Way that full red or green stands for, as a share of a frame's width or height.
+    /// Way that full red or green stands for, as a fraction of a frame's width or height.
     pub motion_scale: f32,
     /// Sides in the six-way maps; absent without them.
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -62,7 +62,7 @@ pub fn readme(engine: Engine, title: &str, numbers: &FlipbookNumbers) -> String 
     };
     text += &format!(
         "\nClear texels continue the smoke beside them, so that filtered edges stay bright{clear}.\n\n**Motion**: full red or green is \
-         a way of {motion_scale:.5} of a frame's width or height. Between frames n and n + 1, at a share t of the time, mix both \
+         a way of {motion_scale:.5} of a frame's width or height. Between frames n and n + 1, at a fraction t of the time, mix both \
          by t, the first sampled at uv − m·t and the second at uv + m·(1 − t), with m = (2·rg − 1) · {motion_scale:.5} of the \
          respective frame, in coordinates of one frame. Keep the coordinates half a texel inside the frame: the sheet has another \
          frame beside it.\n\n",

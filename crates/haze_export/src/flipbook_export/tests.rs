@@ -104,11 +104,11 @@ fn texel(image: &RgbaImage, at: IVec2) -> Vec4 {
 
 /// Bilinear filter; `uv` of one frame, from the upper left corner.
 fn sample(image: &RgbaImage, uv: Vec2) -> Vec4 {
-    let place = uv * SIDE as f32 - 0.5;
-    let low = place.floor().as_ivec2();
-    let share = place - place.floor();
-    let row = |y: i32| texel(image, low + IVec2::new(0, y)).lerp(texel(image, low + IVec2::new(1, y)), share.x);
-    row(0).lerp(row(1), share.y)
+    let position = uv * SIDE as f32 - 0.5;
+    let low = position.floor().as_ivec2();
+    let fraction = position - position.floor();
+    let row = |y: i32| texel(image, low + IVec2::new(0, y)).lerp(texel(image, low + IVec2::new(1, y)), fraction.x);
+    row(0).lerp(row(1), fraction.y)
 }
 
 fn pixels() -> impl Iterator<Item = UVec2> {
@@ -143,7 +143,7 @@ fn frames_of_the_sheets_are_those_of_the_renderer() {
                 continue;
             }
             compared += 1;
-            // Dithering depends on the place on the sheet, and moves either value by up to a step.
+            // Dithering depends on the position on the sheet, and moves either value by up to a step.
             let apart = found.iter().zip(expected).map(|(a, b)| a.abs_diff(b)).max();
             assert!(apart <= Some(2), "{name} {at}: {found:?}, not {expected:?}");
             let mean = normals.load(at.as_ivec2()).xyz().normalize_or(Vec3::Z);
@@ -176,7 +176,7 @@ fn premultiplied_flipbooks_keep_the_glow_of_fire() {
         let [found, divided] = [&kept, &straight].map(|image| image.get_pixel(at.x, at.y).0);
         let expected = before_black.get_pixel(at.x, at.y).0;
         assert_eq!(found[3], divided[3], "{at}");
-        // Dithering depends on the place on the sheet, and moves either value by up to a step.
+        // Dithering depends on the position on the sheet, and moves either value by up to a step.
         let apart = found.iter().zip(expected).map(|(a, b)| a.abs_diff(b)).max();
         assert!(apart <= Some(2), "{at}: {found:?}, not {expected:?}");
         clear += u32::from(found == [0; 4]);
@@ -290,8 +290,8 @@ fn flipbook_json_is_as_documented() {
         assert_eq!(motion_green, if engine == Engine::Unity { up } else { down });
         // The images are those of the files, in the same order, and have alpha where it is told.
         for file in numbers["files"].as_array().unwrap() {
-            let picture = read_png(&flipbook.folder.path().join(file["name"].as_str().unwrap())).unwrap();
-            assert_eq!(picture.color().has_alpha(), file["alpha"] != "none", "{file}");
+            let image = read_png(&flipbook.folder.path().join(file["name"].as_str().unwrap())).unwrap();
+            assert_eq!(image.color().has_alpha(), file["alpha"] != "none", "{file}");
         }
     }
 }

@@ -70,7 +70,7 @@ impl MaterialExport {
         }
         texts.push(("README.md".to_owned(), readme::readme(engine, title, system, &snippet)));
         let first_row_is_at_the_top = engine.first_row_is_at_the_top();
-        let ramp = |ramp: &UsedRamp| (ramp.file(), picture((ramp.of)(assets), first_row_is_at_the_top).into());
+        let ramp = |ramp: &UsedRamp| (ramp.file(), image((ramp.of)(assets), first_row_is_at_the_top).into());
         let mut textures: Vec<(_, DynamicImage)> = snippet.ramps.iter().map(ramp).collect();
         if engine.takes_sprite() {
             textures.push((SPRITE.to_owned(), sprite.image.into()));
@@ -104,7 +104,7 @@ impl MaterialExport {
 }
 
 /// Image of a ramp, sRGB.
-fn picture(ramp: &Ramp, first_row_is_at_the_top: bool) -> RgbImage {
+fn image(ramp: &Ramp, first_row_is_at_the_top: bool) -> RgbImage {
     let size = ramp.size();
     RgbImage::from_fn(size.x, size.y, |x, y| {
         let row = if first_row_is_at_the_top { y } else { size.y - 1 - y };

@@ -159,14 +159,14 @@ fn functions(settings: &Settings, knows_age: bool) -> Vec<Function> {
         },
         Function {
             name: "haze_coverage",
-            doc: "Opacity of the smoke: the share of the background that it hides.",
+            doc: "Opacity of the smoke: the fraction of the background that it hides.",
             ramps: if covers_by_ramp { vec!["coverage_ramp"] } else { Vec::new() },
             inputs: AMOUNT,
             result: "f32",
             body: match covers_by_ramp {
                 true => {
                     "    let covered = coverage(amount, HAZE_BOOST);\n    \
-                     return painted_share(sample_ramp(coverage_ramp, ramp_sampler, covered));\n"
+                     return painted_fraction(sample_ramp(coverage_ramp, ramp_sampler, covered));\n"
                 }
                 false => "    return coverage(amount, HAZE_BOOST);\n",
             }
@@ -191,7 +191,7 @@ fn functions(settings: &Settings, knows_age: bool) -> Vec<Function> {
             ramps: vec!["heat_ramp"],
             inputs: AGE,
             result: "f32",
-            body: "    return painted_share(sample_ramp(heat_ramp, ramp_sampler, age));\n".into(),
+            body: "    return painted_fraction(sample_ramp(heat_ramp, ramp_sampler, age));\n".into(),
         });
     }
     functions

@@ -4,7 +4,7 @@ use std::process::{Command, Stdio};
 
 use glam::{Vec2, Vec3, Vec4, vec3};
 use haze::{Settings, wgpu};
-use haze_core::formula::lighting::{backlight_weight, coverage, painted_share};
+use haze_core::formula::lighting::{backlight_weight, coverage, painted_fraction};
 use haze_core::formula::ramp::sample_ramp;
 use haze_core::formula::response::{diffuse_response, fire_response, soft_scatter_curve};
 use haze_core::settings::{Backlight, CoverageMode, RampFilter, SoftScatterMode};
@@ -81,7 +81,7 @@ fn expected(settings: &Settings, assets: &MaterialAssets, case: &Case) -> [Vec4;
     let diffuse = diffuse_response(ramps, filter, normal, to_light, covered, against);
     let opacity = match settings.coverage {
         CoverageMode::Linear => covered,
-        CoverageMode::Ramp => painted_share(sample_ramp(&assets.coverage_ramp, filter, covered)),
+        CoverageMode::Ramp => painted_fraction(sample_ramp(&assets.coverage_ramp, filter, covered)),
     };
     let curve = &settings.soft_scatter;
     let scatter = match curve.mode {
@@ -515,7 +515,7 @@ fn readmes_for_godot_say_what_its_particles_do_not_do() {
     system.emitter.ring_speed = 1.0;
     system.emitter.obstacle_margin = 1.0;
     system.settings.fire.intensity = 2.0;
-    for name in ["period", "attraction", "ring_speed", "heat_spread", "obstacle", "small_share", "turbulence"] {
+    for name in ["period", "attraction", "ring_speed", "heat_spread", "obstacle", "small_fraction", "turbulence"] {
         assert!(has(&preset, name), "{name}");
     }
     assert!(text_of(&godot_export(&preset), SCENE).is_some());
@@ -538,11 +538,11 @@ fn textures_hold_the_ramps_in_the_row_order_of_the_engine() {
             "{engine:?}"
         );
         // Images of ramps have row 0 at the bottom.
-        let mut picture = export.textures[0].1.clone();
+        let mut image = export.textures[0].1.clone();
         if engine != Engine::Unity {
-            picture = picture.flipv();
+            image = image.flipv();
         }
-        let read = Ramp::from_image(&picture);
+        let read = Ramp::from_image(&image);
         let ramp = &assets[0].diffuse_ramp;
         assert_eq!(read.size(), ramp.size());
         for y in 0..ramp.size().y {

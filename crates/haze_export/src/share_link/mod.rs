@@ -57,7 +57,7 @@ pub fn fragment(text: &str) -> Option<&str> {
     fragment.starts_with(|first: char| first.is_ascii_digit()).then_some(fragment)
 }
 
-/// Returns the part after `#` of a link in place of a preset's name. A file may have the name of a link.
+/// Returns the part after `#` of a link instead of a preset's name. A file may have the name of a link.
 pub fn fragment_of_name(name: &Path) -> Option<&str> {
     name.to_str().filter(|_| !name.exists()).and_then(fragment)
 }

@@ -76,17 +76,17 @@ impl<'a> Segment<'a> {
     /// Segment that ends at a keyframe. With a period, an index beyond the ends is that of another repetition.
     fn ending_at(keys: &'a [Keyframe], period: f32, end: i64) -> Self {
         let count = keys.len() as i64;
-        let place = |index: i64| {
+        let position = |index: i64| {
             let turns = index.div_euclid(count);
             let key = keys.get(index.rem_euclid(count) as usize).filter(|_| turns == 0 || period > 0.0)?;
             Some(Place { key, time: key.time + turns as f32 * period })
         };
         let nearest = Place { key: &keys[0], time: keys[0].time };
         Self {
-            before: place(end - 2),
-            from: place(end - 1).unwrap_or(nearest),
-            to: place(end).unwrap_or(nearest),
-            after: place(end + 1),
+            before: position(end - 2),
+            from: position(end - 1).unwrap_or(nearest),
+            to: position(end).unwrap_or(nearest),
+            after: position(end + 1),
         }
     }
 
@@ -97,8 +97,9 @@ impl<'a> Segment<'a> {
         start + (end - start) * self.eased(progress, end - start, &slope, &|_| 1.0)
     }
 
-    /// Share of the turn from one direction to the next. Angles have no sign, so the axes of two turns tell whether the second
-    /// goes on like the first, bends, or leads back: the speed between them is multiplied by the cosine of the bend, at least 0.
+    /// Fraction of the turn from one direction to the next. Angles have no sign, so the axes of two turns tell whether the
+    /// second goes on like the first, bends, or leads back: the speed between them is multiplied by the cosine of the bend, at
+    /// least 0.
     fn turn(&self, progress: f32) -> f32 {
         let angle = |from: &Place<'_>, to: &Place<'_>| match directions(from, to) {
             Some([from, to]) => from.angle_between(to),
@@ -112,8 +113,8 @@ impl<'a> Segment<'a> {
         self.eased(progress, angle(&self.from, &self.to), &slope, &straightness)
     }
 
-    /// Share of the way for a share of the time. `change`: the length of the way. `straightness` of the way around the second of
-    /// three keyframes, 0 to 1, multiplies the slope there.
+    /// Fraction of the way for a fraction of the time. `change`: the length of the way. `straightness` of the way around the
+    /// second of three keyframes, 0 to 1, multiplies the slope there.
     fn eased(
         &self,
         progress: f32,
@@ -138,7 +139,7 @@ impl<'a> Segment<'a> {
                     .after
                     .as_ref()
                     .map_or(0.0, |after| here.joined(&slope(to, after)) * straightness([from, to, after]));
-                // Slopes in shares of the way per share of the time.
+                // Slopes in fractions of the way per fraction of the time.
                 let unit = if change == 0.0 { 0.0 } else { here.seconds / change };
                 hermite(progress, start * unit, end * unit)
             }

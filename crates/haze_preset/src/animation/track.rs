@@ -13,7 +13,7 @@ settings! {
     /// Random changes of a number or a color, as of a flame or a failing lamp.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct Flicker {
-        /// Largest change, as a share of the value. 0: steady. 1: it goes out at times, and doubles.
+        /// Largest change, as a fraction of the value. 0: steady. 1: it goes out at times, and doubles.
         amount: f32 = 0.0, number(0.0..=1.0, "");
         /// Changes per second. Higher: more nervous. A fire has 5.
         rate: f32 = 5.0, number(0.01..=60.0, "1/s");

@@ -105,11 +105,11 @@ fn only_files_are_replaced() {
         let link = path(&format!("link_{index}"));
         symlink(&target, &link).unwrap();
         let before = fs::symlink_metadata(&target).unwrap().file_type();
-        for place in [&target, &link] {
-            let error = write_file(place, b"new").unwrap_err().to_string();
+        for path in [&target, &link] {
+            let error = write_file(path, b"new").unwrap_err().to_string();
             assert!(error.contains(", not a file; expected a file, or a name"), "{error}");
-            assert_eq!(error.contains("a link to "), place.is_symlink(), "{error}");
-            assert!(check_writable(place).is_err() && write_state_file(place, b"new").is_err());
+            assert_eq!(error.contains("a link to "), path.is_symlink(), "{error}");
+            assert!(check_writable(path).is_err() && write_state_file(path, b"new").is_err());
         }
         assert_eq!(fs::symlink_metadata(&target).unwrap().file_type(), before);
     }

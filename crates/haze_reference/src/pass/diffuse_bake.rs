@@ -31,13 +31,13 @@ impl VisibleSystem<'_> {
         shade.openness = self.openness(pixel, moments);
         let blocks = self.settings.shadow_blocks() as usize;
         for (block, visible) in shade.visible.iter_mut().enumerate().take(blocks) {
-            *visible = self.mean_along_ray(pixel, moments, |volume, place| volume.sample_visible(block, place));
+            *visible = self.mean_along_ray(pixel, moments, |volume, position| volume.sample_visible(block, position));
         }
         if let Some(volume) = self.optical_depths.as_ref().filter(|_| blocks > 1) {
-            let place = self.mean_place(pixel, moments);
-            let own = own_at_mean_depth(volume.sample(0, place), accumulated);
+            let position = self.mean_cell(pixel, moments);
+            let own = own_at_mean_depth(volume.sample(0, position), accumulated);
             for (block, depths) in shade.optical_depths.iter_mut().enumerate().take(blocks).skip(1) {
-                *depths = foreign_optical_depths(volume.sample(block, place), own);
+                *depths = foreign_optical_depths(volume.sample(block, position), own);
             }
         }
         shade
@@ -51,7 +51,7 @@ impl VisibleSystem<'_> {
     }
 
     /// The same in cells.
-    fn mean_place(&self, pixel: Vec2, moments: Vec2) -> Vec3 {
+    fn mean_cell(&self, pixel: Vec2, moments: Vec2) -> Vec3 {
         self.system.grid_from_view.transform_point3(self.mean_position(pixel, moments))
     }
 
@@ -127,33 +127,33 @@ impl VisibleSystem<'_> {
     ) -> Vec3 {
         let sample = sample_light(light, position);
         let ramps = [&self.material.diffuse_ramp, &self.material.backlight_ramp];
-        let against = self.backlight_share(sample.direction, position);
+        let against = self.backlight_fraction(sample.direction, position);
         let filter = self.settings.ramp_filter;
         let response = diffuse_response(ramps, filter, normal, sample.direction, covered, against);
         response * light.color * sample.attenuation * self.shadow_on_light(light, sample.direction, position, shade)
     }
 
-    /// Share of the backlight ramp in a light, 0 to 1; the rest comes from the diffuse ramp.
-    pub fn backlight_share(&self, to_light: Vec3, position: Vec3) -> f32 {
+    /// Fraction of the backlight ramp in a light, 0 to 1; the rest comes from the diffuse ramp.
+    pub fn backlight_fraction(&self, to_light: Vec3, position: Vec3) -> f32 {
         match self.settings.diffuse.backlight {
             Backlight::Ramp => backlight_weight(to_light, direction_to_viewer(position, self.view.orthographic)),
             _ => 0.0,
         }
     }
 
-    /// Share of a light that comes through the smoke before it.
+    /// Fraction of a light that comes through the smoke before it.
     pub fn shadow_on_light(&self, light: &LightUniform, to_light: Vec3, position: Vec3, shade: &Shade) -> Vec3 {
         if self.system.shadow_strength <= 0.0 || light.shadow_slot < 0.5 {
             return Vec3::ONE;
         }
-        let at = self.shadow_place(light, to_light, position, shade);
+        let at = self.shadow_position(light, to_light, position, shade);
         let painted = sample_ramp_2d(&self.material.shadow_ramp, self.settings.ramp_filter, at);
         Vec3::ONE.lerp(painted, self.system.shadow_strength)
             * select_slot(light.shadow_slot, shade.visible[block_of(light)])
     }
 
     /// Place on the shadow ramp of a light with shadow.
-    pub fn shadow_place(&self, light: &LightUniform, to_light: Vec3, position: Vec3, shade: &Shade) -> Vec2 {
+    pub fn shadow_position(&self, light: &LightUniform, to_light: Vec3, position: Vec3, shade: &Shade) -> Vec2 {
         let to_viewer = direction_to_viewer(position, self.view.orthographic);
         shadow_position(select_slot(light.shadow_slot, shade.optical_depths[block_of(light)]), to_light, to_viewer)
     }
@@ -178,11 +178,11 @@ impl VisibleSystem<'_> {
     }
 
     /// Place on the fire ramp. `fire`: as from [`fire_from_moments`](haze_core::formula::fire::fire_from_moments).
-    pub fn fire_place(&self, fire: Vec2, amount: f32) -> Vec2 {
+    pub fn fire_position(&self, fire: Vec2, amount: f32) -> Vec2 {
         Vec2::new(fire.x, coverage(amount * fire.y, self.system.boost))
     }
 
-    /// Light that hot smoke gives, per share of the scene that all smoke hides. `fire`: as from
+    /// Light that hot smoke gives, per fraction of the scene that all smoke hides. `fire`: as from
     /// [`fire_from_moments`](haze_core::formula::fire::fire_from_moments).
     pub fn emission(&self, fire: Vec2, amount: f32) -> Vec3 {
         let system = &self.system;
@@ -213,10 +213,10 @@ impl VisibleSystem<'_> {
         let face = |face: i32| {
             let mut baked = Image::new(UVec2::splat(side), Vec3::ZERO);
             baked.for_each(|at, texel| {
-                let place = at.as_vec2() / (side - 1) as f32 * 2.0 - 1.0;
+                let position = at.as_vec2() / (side - 1) as f32 * 2.0 - 1.0;
                 let normal = match mode {
-                    DiffuseMode::Motif => motif_normal(place),
-                    _ => cube_direction(face, place).normalize(),
+                    DiffuseMode::Motif => motif_normal(position),
+                    _ => cube_direction(face, position).normalize(),
                 };
                 let light = bounded_light(self.diffuse_from_lights(normal, 1.0, self.system.center, &Shade::NONE));
                 *texel = Vec3::from(light.to_array().map(|channel| f16::from_f32(channel).to_f32()));

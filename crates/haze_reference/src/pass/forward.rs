@@ -14,11 +14,11 @@ use crate::visible_system::VisibleSystem;
 
 impl VisibleSystem<'_> {
     /// Lights and blends every sprite over the image.
-    pub fn forward(&self, picture: &mut Image<Vec4>) {
-        let grid = TexelGrid { origin: Vec2::ZERO, scale: 1.0, size: picture.size };
+    pub fn forward(&self, image: &mut Image<Vec4>) {
+        let grid = TexelGrid { origin: Vec2::ZERO, scale: 1.0, size: image.size };
         let mode = self.settings.blend_mode;
         let system = &self.system;
-        picture.for_bands(|first_row, band| {
+        image.for_bands(|first_row, band| {
             let scene = |at| self.scene_view_depth(at);
             self.for_fragments(&grid, first_row, band, scene, |at, sprite, fragment, texel: &mut Vec4| {
                 let amount = fragment.amount;

@@ -4,7 +4,7 @@ use glam::{IVec2, Mat4, UVec2, Vec2, Vec3, Vec4, Vec4Swizzles};
 use haze_core::assets::image::Image;
 use haze_core::formula::depth::{SKY_VIEW_DEPTH, view_depth_from_ndc_depth};
 use haze_core::formula::lighting::sample_light;
-use haze_core::formula::screen_shadow::{scene_normal, share_of_light};
+use haze_core::formula::screen_shadow::{fraction_of_light, scene_normal};
 use haze_core::formula::shadow::LIGHTS_PER_BLOCK;
 use haze_core::formula::uniforms::{LightUniform, ShadowMapUniform, ViewUniform};
 use haze_core::formula::view::{ndc_from_pixel, pixels_per_metre, view_position};
@@ -14,7 +14,7 @@ use super::shadow_visibility::map_visibility;
 use crate::input::FrameInput;
 use crate::scene_shadow::SceneShadow;
 
-/// Shadow of a frame's smoke on a picture of the scene.
+/// Shadow of a frame's smoke on an image of the scene.
 pub struct ScreenShadow<'a> {
     view: ViewUniform,
     world_from_view: Mat4,
@@ -47,10 +47,10 @@ impl<'a> ScreenShadow<'a> {
         })
     }
 
-    /// Multiplies every pixel by the share of its light that is left.
-    pub fn shade(&self, shadow: &SceneShadow, picture: &mut Image<Vec4>) {
+    /// Multiplies every pixel by the fraction of its light that is left.
+    pub fn shade(&self, shadow: &SceneShadow, image: &mut Image<Vec4>) {
         let grid_from_world = self.world_from_grid.inverse();
-        picture.for_each(|at, texel| {
+        image.for_each(|at, texel| {
             let at = at.as_ivec2();
             let point = self.scene_point(at);
             if -point.z >= SKY_VIEW_DEPTH {
@@ -79,7 +79,7 @@ impl<'a> ScreenShadow<'a> {
                 full += arriving;
                 shaded += arriving * shadow.haze_transmittance(world, index);
             }
-            *texel = (texel.xyz() * share_of_light(full, shaded)).extend(texel.w);
+            *texel = (texel.xyz() * fraction_of_light(full, shaded)).extend(texel.w);
         });
     }
 

@@ -51,12 +51,12 @@ fn optical_depth_towards(
     let step = ray.w / steps as f32;
     // The steps fill the cone between the point and the light's disc.
     let slope = radius / light.truncate().distance(origin).max(1.0e-4);
-    let place = |i: u32| {
+    let position = |i: u32| {
         let along = (i as f32 + 0.5) * step;
         let on_line = origin + ray.truncate() * along;
         if slope > 0.0 { on_line + light_disc_offset(i, ray.truncate()) * (along * slope) } else { on_line }
     };
-    let depth: f32 = (0..steps).map(|i| trilinear(shadow.grid.size, density, place(i))).sum();
+    let depth: f32 = (0..steps).map(|i| trilinear(shadow.grid.size, density, position(i))).sum();
     (depth * step).min(MAX_OPTICAL_DEPTH)
 }
 

@@ -17,36 +17,37 @@ impl VisibleSystem<'_> {
         self.lights.iter().map(|light| channel_of_slot(light.shadow_slot)).sum::<Vec3>().min(Vec3::ONE)
     }
 
-    /// Shares of the lights that come through smoke and past the scene. White without shadow.
-    pub fn shares_of_lights(&self, optical_depths: Vec3, visible: Vec3) -> Vec3 {
+    /// Fractions of the lights that come through smoke and past the scene. White without shadow.
+    pub fn fractions_of_lights(&self, optical_depths: Vec3, visible: Vec3) -> Vec3 {
         if !AttachmentRole::OpticalDepths.is_used(&self.settings) {
             return Vec3::ONE;
         }
-        let share = Vec3::from((-optical_depths).to_array().map(f32::exp2)) * visible;
-        Vec3::ONE + (share - Vec3::ONE) * self.channels_with_light()
+        let fraction = Vec3::from((-optical_depths).to_array().map(f32::exp2)) * visible;
+        Vec3::ONE + (fraction - Vec3::ONE) * self.channels_with_light()
     }
 
     /// Light in the grid on the plane of the system's center, and 1 in w; or 0 outside of the grid.
     pub fn slice_of_light(&self, pixel: Vec2) -> Vec4 {
         let system = &self.system;
         let position = self.view_position(pixel, -system.center.z);
-        let place = system.grid_from_view.transform_point3(position);
-        let is_outside = place.cmplt(Vec3::ZERO).any() || place.cmpgt(system.grid_size).any();
+        let cell_position = system.grid_from_view.transform_point3(position);
+        let is_outside = cell_position.cmplt(Vec3::ZERO).any() || cell_position.cmpgt(system.grid_size).any();
         let Some(volume) = self.optical_depths.as_ref().filter(|_| !is_outside) else { return Vec4::ZERO };
         if !AttachmentRole::OpticalDepths.is_used(&self.settings) {
             return Vec4::ZERO;
         }
         let pixels = pixels_per_metre(self.view.size.y, self.view.ray_scale.y, -position.z, self.view.orthographic);
-        let shares = self.shares_of_lights(volume.sample(0, place), volume.sample_visible(0, place));
+        let fractions =
+            self.fractions_of_lights(volume.sample(0, cell_position), volume.sample_visible(0, cell_position));
         let normal = system.grid_from_view.transform_vector3(Vec3::Z);
-        (shares * cell_pattern(place, normal, system.cells_per_metre / pixels)).extend(1.0)
+        (fractions * cell_pattern(cell_position, normal, system.cells_per_metre / pixels)).extend(1.0)
     }
 }
 
-/// Brightness of a place on a plane through the grid: darker along the borders of cells, but for those that are nearly
+/// Brightness of a cell_position on a plane through the grid: darker along the borders of cells, but for those that are nearly
 /// parallel to the plane. `normal`: of the plane, any length. `pixel`: its size in cells.
-fn cell_pattern(place: Vec3, normal: Vec3, pixel: f32) -> f32 {
-    let inside = place - place.floor();
+fn cell_pattern(position: Vec3, normal: Vec3, pixel: f32) -> f32 {
+    let inside = position - position.floor();
     let is_steepest = normal.abs().cmpeq(Vec3::splat(normal.abs().max_element()));
     let nearest = Vec3::select(is_steepest, Vec3::ONE, inside.min(1.0 - inside)).min_element();
     CELL_BORDER + (1.0 - CELL_BORDER) * saturate(nearest / pixel.max(1.0e-6))

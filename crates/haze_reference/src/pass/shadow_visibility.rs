@@ -3,13 +3,13 @@
 use glam::{IVec2, Mat4, UVec3, Vec3, Vec4, Vec4Swizzles};
 use half::f16;
 use haze_core::assets::image::Image;
-use haze_core::formula::shadow_map::{shadow_map_place, shadow_map_visibility};
+use haze_core::formula::shadow_map::{shadow_map_position, shadow_map_visibility};
 use haze_core::formula::uniforms::ShadowMapUniform;
 use haze_core::view_setup::SmokeShadow;
 
 use crate::input::ShadowMap;
 
-/// Share of each cell of the density grid that the lights of a block reach past the scene.
+/// Fraction of each cell of the density grid that the lights of a block reach past the scene.
 pub fn shadow_visibility(maps: &[ShadowMap<'_>], shadow: &SmokeShadow, block: u32) -> Vec<Vec3> {
     let of_light = |light: usize| maps.iter().find(|map| map.projection.light == light);
     let uniform = shadow.visibility(block, |light| of_light(light).map(|map| map.projection));
@@ -20,8 +20,8 @@ pub fn shadow_visibility(maps: &[ShadowMap<'_>], shadow: &SmokeShadow, block: u3
         let visible: Vec3 = (0..8)
             .map(|corner| {
                 let offset = UVec3::new(corner & 1, (corner >> 1) & 1, corner >> 2).as_vec3() * 0.5 + 0.25;
-                let place = cell.as_vec3() + offset;
-                Vec3::from([0, 1, 2].map(|slot| map_visibility(&uniform.maps[slot], layers[slot], place)))
+                let position = cell.as_vec3() + offset;
+                Vec3::from([0, 1, 2].map(|slot| map_visibility(&uniform.maps[slot], layers[slot], position)))
             })
             .sum();
         Vec3::from((visible / 8.0).to_array().map(|visible| f16::from_f32(visible).to_f32()))
@@ -29,10 +29,10 @@ pub fn shadow_visibility(maps: &[ShadowMap<'_>], shadow: &SmokeShadow, block: u3
     (0..size.element_product()).map(look_up).collect()
 }
 
-/// Share of a light that reaches a point past the scene, between the four nearest texels. `place`: in cells.
-pub fn map_visibility(map: &ShadowMapUniform, layers: &[Image<f32>], place: Vec3) -> f32 {
+/// Fraction of a light that reaches a point past the scene, between the four nearest texels. `position`: in cells.
+pub fn map_visibility(map: &ShadowMapUniform, layers: &[Image<f32>], position: Vec3) -> f32 {
     let inside = |(clip_from_grid, layer): (&Mat4, _)| {
-        let at = shadow_map_place(*clip_from_grid * place.extend(1.0));
+        let at = shadow_map_position(*clip_from_grid * position.extend(1.0));
         (at.w > 0.5).then_some((at, layer))
     };
     let found: Option<(Vec4, &Image<f32>)> = map.clip_from_grid.iter().zip(layers).find_map(inside);
@@ -49,6 +49,6 @@ pub fn map_visibility(map: &ShadowMapUniform, layers: &[Image<f32>], place: Vec3
     })
 }
 
-fn lerp(a: f32, b: f32, share: f32) -> f32 {
-    a + (b - a) * share
+fn lerp(a: f32, b: f32, fraction: f32) -> f32 {
+    a + (b - a) * fraction
 }

@@ -25,9 +25,9 @@ pub struct GlowQuad<'a> {
 
 impl AccumulatedTarget<'_> {
     /// Adds the glow of all lights to the image.
-    pub fn specular_scatter(&self, picture: &mut Image<Vec4>) {
+    pub fn specular_scatter(&self, image: &mut Image<Vec4>) {
         for glow in self.visible.lights.iter().filter_map(|light| self.glow_quad(light)) {
-            picture.for_each(|at, texel| {
+            image.for_each(|at, texel| {
                 if let Some((_, specular)) = self.sample_glow(&glow, at.as_vec2() + 0.5) {
                     *texel += specular.extend(0.0);
                 }
@@ -85,7 +85,7 @@ impl AccumulatedTarget<'_> {
         Some((coordinate, bounded_light(found * glow.color * window)))
     }
 
-    /// Share of a light's body that the scene leaves visible.
+    /// Fraction of a light's body that the scene leaves visible.
     pub fn light_visibility(&self, pixel: Vec2, radius: f32, light_depth: f32) -> f32 {
         let visible = |i: u32| {
             self.visible.scene_view_depth((pixel + visibility_tap(i, radius)).floor().as_ivec2()) >= light_depth

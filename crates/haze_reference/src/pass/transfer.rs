@@ -5,7 +5,7 @@ use haze_core::assets::image::Image;
 use haze_core::formula::color::{bounded_light, overdraw_color};
 use haze_core::formula::diffuse_bake::{cube_coordinate, motif_position, sample_baked, spherical_harmonics};
 use haze_core::formula::fire::fire_from_moments;
-use haze_core::formula::lighting::{coverage, painted_share};
+use haze_core::formula::lighting::{coverage, painted_fraction};
 use haze_core::formula::normal::normal_from_accumulation;
 use haze_core::formula::ramp::sample_ramp_2d;
 use haze_core::formula::saturate;
@@ -63,8 +63,8 @@ impl AccumulatedTarget<'_> {
     }
 
     /// Lights the smoke, or shows a debug view of it, and blends it over the image.
-    pub fn transfer(&self, debug_view: DebugView, picture: &mut Image<Vec4>) {
-        picture.for_each(|at, texel| {
+    pub fn transfer(&self, debug_view: DebugView, image: &mut Image<Vec4>) {
+        image.for_each(|at, texel| {
             let pixel = at.as_vec2() + 0.5;
             if self.covers_pixel(at.as_ivec2(), pixel)
                 && let Some(source) = self.transfer_fragment(debug_view, pixel)
@@ -124,8 +124,8 @@ impl AccumulatedTarget<'_> {
             return Some((surface.normal * 0.5 + 0.5).extend(1.0) * covered);
         }
         if debug_view == DebugView::Shadow {
-            let shares = self.visible.shares_of_lights(surface.shade.optical_depths[0], surface.shade.visible[0]);
-            return Some(shares.extend(1.0) * covered);
+            let fractions = self.visible.fractions_of_lights(surface.shade.optical_depths[0], surface.shade.visible[0]);
+            return Some(fractions.extend(1.0) * covered);
         }
         let mut light = Vec3::ZERO;
         if debug_view != DebugView::SoftScatter {
@@ -140,13 +140,13 @@ impl AccumulatedTarget<'_> {
         Some(bounded_light(light).extend(1.0) * covered)
     }
 
-    /// Share of the scene that the smoke hides.
+    /// Fraction of the scene that the smoke hides.
     pub fn coverage(&self, amount: f32) -> f32 {
         let visible = self.visible;
         let linear = coverage(amount, visible.system.boost);
         match visible.settings.coverage {
             CoverageMode::Linear => linear,
-            CoverageMode::Ramp => painted_share(visible.sample_ramp(&visible.material.coverage_ramp, linear)),
+            CoverageMode::Ramp => painted_fraction(visible.sample_ramp(&visible.material.coverage_ramp, linear)),
         }
     }
 

@@ -15,9 +15,9 @@ use crate::platform::file_io;
 /// skipped. No file is replaced: if a different file is in the way, the function returns an error before it writes
 /// anything.
 pub fn copy_assets(preset: &Preset, from: &Path, to: &Path) -> Result<(), Error> {
-    let pictures = relative_image_paths(preset);
-    let recipes: Vec<_> = pictures.iter().flat_map(|picture| recipe_paths(picture)).collect();
-    let beside = pictures.into_iter().chain(recipes).map(|file| from.join(file));
+    let images = relative_image_paths(preset);
+    let recipes: Vec<_> = images.iter().flat_map(|image| recipe_paths(image)).collect();
+    let beside = images.into_iter().chain(recipes).map(|file| from.join(file));
     let sources = beside.chain(particle_file_paths(&AssetFolders::new(from), preset));
     let relative = |source: PathBuf| Some((source.clone(), to.join(source.strip_prefix(from).ok()?)));
     copy(sources.filter_map(relative))
@@ -62,7 +62,7 @@ fn copy(pairs: impl Iterator<Item = (PathBuf, PathBuf)>) -> Result<(), Error> {
 fn read(path: &Path) -> Result<Vec<u8>, Error> {
     let ends_with = |end: &str| path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case(end));
     match () {
-        () if ends_with("png") => file_io::read_picture(path),
+        () if ends_with("png") => file_io::read_image(path),
         () if ends_with("json") => file_io::read_recipe(path),
         () if ends_with("csv") || ends_with("ply") => file_io::read_particles(path),
         () => file_io::read_backdrop(path),

@@ -186,12 +186,12 @@ pub fn paste_keys(preset: &mut Preset, setting: &str, time: f32, copied: &[Keyfr
     }
 }
 
-/// Gives the tracks of lights the new places of their lights; those of a light without a place are removed.
-pub fn renumber_lights(tracks: &mut Vec<Track>, place: impl Fn(usize) -> Option<usize>) {
+/// Gives the tracks of lights the new positions of their lights; those of a light without a position are removed.
+pub fn renumber_lights(tracks: &mut Vec<Track>, position: impl Fn(usize) -> Option<usize>) {
     tracks.retain_mut(|track| {
         let Some(index) = light_of(&track.setting) else { return true };
-        let Some(place) = place(index) else { return false };
-        track.setting = with_light(&track.setting, place);
+        let Some(position) = position(index) else { return false };
+        track.setting = with_light(&track.setting, position);
         true
     });
 }

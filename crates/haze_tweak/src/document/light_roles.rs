@@ -25,9 +25,9 @@ fn is_key(light: &Light) -> bool {
     light.role == LightRole::Key
 }
 
-/// Returns the brightness of a light at a place, without shadows and cones.
-pub fn brightness_at(light: &Light, place: Vec3) -> f32 {
-    let distance = light.position.distance(place);
+/// Returns the brightness of a light at a position, without shadows and cones.
+pub fn brightness_at(light: &Light, position: Vec3) -> f32 {
+    let distance = light.position.distance(position);
     let falloff = match light.kind {
         LightKind::Directional => 1.0,
         _ if distance > light.range => return 0.0,

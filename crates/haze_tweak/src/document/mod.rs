@@ -131,9 +131,9 @@ impl Document {
     /// Returns the files that the image depends on, for watching. Some may be missing.
     pub fn files(&self, folders: &AssetFolders) -> Vec<PathBuf> {
         let own = (!self.is_built_in()).then(|| self.path.clone());
-        let pictures = image_paths(folders, &self.preset);
+        let images = image_paths(folders, &self.preset);
         let backdrop = backdrop_file_paths(folders, &self.preset);
-        own.into_iter().chain(pictures).chain(particle_file_paths(folders, &self.preset)).chain(backdrop).collect()
+        own.into_iter().chain(images).chain(particle_file_paths(folders, &self.preset)).chain(backdrop).collect()
     }
 
     /// Returns true if the document is a built-in preset, without a file.

@@ -100,7 +100,7 @@ pub fn step_name(before: &Preset, after: &Preset) -> String {
     }
 }
 
-/// True if fields are those of systems that have only changed their places.
+/// True if fields are those of systems that have only changed their positions.
 fn is_move(fields: &[String], before: &Preset, after: &Preset) -> bool {
     let before = &before.systems;
     let after = &after.systems;

@@ -52,7 +52,7 @@ pub enum RampOrigin {
 }
 
 struct EditedRamp {
-    picture: PathBuf,
+    image: PathBuf,
     /// Stamps of the image and of the recipe when they were last read or written.
     stamps: [Option<Stamp>; 2],
     source: RampOrigin,
@@ -115,7 +115,7 @@ impl RampEdits {
     /// Fits a recipe to a painted ramp. Returns the number of stops and the largest error of the fit in 1/255.
     pub fn fit(&mut self, name: &str) -> Result<(usize, f32), Error> {
         let Some(known) = self.known.get_mut(name) else { return Ok((0, 0.0)) };
-        let fitted = fit_image(&read_color_png(&known.picture)?, None)?;
+        let fitted = fit_image(&read_color_png(&known.image)?, None)?;
         let count = fitted.recipe.rows.iter().map(|row| row.stops.len()).sum();
         // The image stays as it was painted until a stop is changed.
         known.written = Some(fitted.recipe.clone());
@@ -143,7 +143,7 @@ impl RampEdits {
         for (name, known) in &mut self.known {
             if !is_held && (known.is_stale || known.is_to_be_written(document.recipes.ramps.get(name))) {
                 known.is_stale = false;
-                if known.stamps != stamps(&known.picture) {
+                if known.stamps != stamps(&known.image) {
                     // A change by another program takes precedence.
                     let was_recipe = matches!(known.source, RampOrigin::Recipe(_));
                     *known = EditedRamp::read(name, folders);
@@ -159,15 +159,15 @@ impl RampEdits {
             if known.written.as_ref() == Some(recipe) && (known.live.is_none() || has_live) {
                 continue;
             }
-            let picture = recipe.bake()?;
+            let image = recipe.bake()?;
             if !has_live {
-                known.live = Some((recipe.clone(), Ramp::from_image(&picture)));
+                known.live = Some((recipe.clone(), Ramp::from_image(&image)));
             }
             if !is_held && known.written.as_ref() != Some(recipe) {
                 // A write error is reported once; the next step tries again.
                 known.written = Some(recipe.clone());
-                let done = write(&known.picture, recipe, &picture);
-                known.stamps = stamps(&known.picture);
+                let done = write(&known.image, recipe, &image);
+                known.stamps = stamps(&known.image);
                 done?;
             }
         }
@@ -188,24 +188,24 @@ impl RampEdits {
 
 impl EditedRamp {
     fn read(name: &str, folders: &AssetFolders) -> Self {
-        let picture = asset_loading::place_of(name, folders);
+        let image = asset_loading::image_path(name, folders);
         // Stamps are taken before the files are read, so that a write in between counts as a change.
-        let stamps = stamps(&picture);
+        let stamps = stamps(&image);
         let source = if builtin::find(builtin::RAMPS, name).is_some() {
             RampOrigin::BuiltIn
         } else {
-            match (asset_loading::ramp(&picture), asset_loading::ramp_recipe(&recipe_of(&picture))) {
+            match (asset_loading::ramp(&image), asset_loading::ramp_recipe(&recipe_of(&image))) {
                 (Err(_), _) => RampOrigin::Missing,
                 (Ok(ramp), Ok(recipe)) if makes(&recipe, &ramp) => RampOrigin::Recipe(recipe),
                 (Ok(_), recipe) => {
-                    let findings = read_color_png(&picture).map(|image| lint_ramp(&image, None)).unwrap_or_default();
+                    let findings = read_color_png(&image).map(|decoded| lint_ramp(&decoded, None)).unwrap_or_default();
                     let has_bands = findings.iter().any(|finding| finding.name == BANDING);
                     RampOrigin::Painted { has_recipe: recipe.is_ok(), has_bands }
                 }
             }
         };
         let written = if let RampOrigin::Recipe(recipe) = &source { Some(recipe.clone()) } else { None };
-        Self { picture, stamps, source, written, live: None, is_stale: false }
+        Self { image, stamps, source, written, live: None, is_stale: false }
     }
 
     /// Returns true if the current recipe differs from the one that was last written.
@@ -243,22 +243,22 @@ pub fn ramp_name(preset: &Preset, system: usize, field: &str) -> Option<String> 
 }
 
 fn makes(recipe: &RampRecipe, ramp: &Ramp) -> bool {
-    recipe.bake().is_ok_and(|picture| Ramp::from_image(&picture) == *ramp)
+    recipe.bake().is_ok_and(|image| Ramp::from_image(&image) == *ramp)
 }
 
 /// Returns `mine.ramp.json` for `mine.png`.
-fn recipe_of(picture: &Path) -> PathBuf {
-    picture.with_extension("ramp.json")
+fn recipe_of(image: &Path) -> PathBuf {
+    image.with_extension("ramp.json")
 }
 
-fn stamps(picture: &Path) -> [Option<Stamp>; 2] {
-    [picture, &recipe_of(picture)].map(Stamp::of)
+fn stamps(image: &Path) -> [Option<Stamp>; 2] {
+    [image, &recipe_of(image)].map(Stamp::of)
 }
 
 /// Writes the recipe first, because the image can be made again from it.
-pub fn write(picture: &Path, recipe: &RampRecipe, baked: &image::DynamicImage) -> Result<(), Error> {
-    file_io::write(&recipe_of(picture), recipe.to_json().as_bytes())?;
-    Ok(write_baked_png(picture, baked)?)
+pub fn write(image: &Path, recipe: &RampRecipe, baked: &image::DynamicImage) -> Result<(), Error> {
+    file_io::write(&recipe_of(image), recipe.to_json().as_bytes())?;
+    Ok(write_baked_png(image, baked)?)
 }
 
 /// Writes a copy of a built-in ramp beside a preset under a free name, and returns the name.
@@ -267,8 +267,8 @@ fn copy_of(name: &str, preset: &Path) -> Result<String, Error> {
     let Some(builtin) = builtin::find(builtin::RAMPS, name) else { return Ok(name.into()) };
     let recipe = RampRecipe::parse(&builtin_path(name), builtin.recipe)?;
     let file = file_io::free_copy_name(name, |file| {
-        let picture = folder.join(file);
-        !file_io::is_taken(&picture) && !file_io::is_taken(&recipe_of(&picture))
+        let image = folder.join(file);
+        !file_io::is_taken(&image) && !file_io::is_taken(&recipe_of(&image))
     });
     write(&folder.join(&file), &recipe, &recipe.bake()?)?;
     Ok(file)

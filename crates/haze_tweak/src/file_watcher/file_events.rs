@@ -7,7 +7,7 @@ use std::sync::Arc;
 use notify::event::{EventKind, ModifyKind};
 use notify::{ErrorKind, Event, RecommendedWatcher, RecursiveMode, Watcher as _};
 
-use super::resolve::places;
+use super::resolve::locations;
 use super::state::Shared;
 
 /// Creates a notifier. Tests pass one that fails.
@@ -55,11 +55,11 @@ impl WatchedFolders {
         /// Most passes over the paths. What moves during a pass sends an event itself, once its folder is watched.
         const MAX_PASSES: u32 = 3;
         for _ in 0..MAX_PASSES {
-            let routes: Vec<_> = files.iter().map(|file| places(file)).collect();
+            let routes: Vec<_> = files.iter().map(|file| locations(file)).collect();
             let all: HashSet<_> = routes.iter().flatten().cloned().collect();
             let ends: HashSet<_> = routes.iter().filter_map(|route| route.last()?.parent()).collect();
-            let folders: HashSet<_> = all.iter().filter_map(|place| place.parent()).collect();
-            shared.lock().places.clone_from(&all);
+            let folders: HashSet<_> = all.iter().filter_map(|path| path.parent()).collect();
+            shared.lock().locations.clone_from(&all);
             let is_unused = |folder: &Path| !folders.contains(folder);
             let unused: Vec<_> = self.watched.iter().filter(|folder| is_unused(folder)).cloned().collect();
             for folder in unused {

@@ -7,13 +7,13 @@ use std::path::{Path, PathBuf};
 /// As many links as Linux follows.
 const MAX_LINKS: u32 = 40;
 
-/// Returns every place that decides where a path leads, from the root on: the folders and links on the way and the file
-/// itself, each named without links before it. The list ends at the first place that does not exist, which is the one
+/// Returns every location that decides where a path leads, from the root on: the folders and links on the way and the file
+/// itself, each named without links before it. The list ends at the first location that does not exist, which is the one
 /// to wait for.
-pub fn places(path: &Path) -> Vec<PathBuf> {
+pub fn locations(path: &Path) -> Vec<PathBuf> {
     let steps =
         |path: &Path| path.components().rev().map(|part| part.as_os_str().to_owned()).collect::<Vec<OsString>>();
-    let mut places = Vec::new();
+    let mut locations = Vec::new();
     let mut links = 0;
     let mut at = PathBuf::new();
     let mut to_go = std::path::absolute(path).map(|path| steps(&path)).unwrap_or_default();
@@ -23,22 +23,22 @@ pub fn places(path: &Path) -> Vec<PathBuf> {
             continue;
         }
         // A root replaces everything before it.
-        let place = at.join(&step);
-        if place.parent().is_none() || step == "." {
-            at = place;
+        let location = at.join(&step);
+        if location.parent().is_none() || step == "." {
+            at = location;
             continue;
         }
-        places.push(place.clone());
-        match fs::read_link(&place) {
+        locations.push(location.clone());
+        match fs::read_link(&location) {
             Ok(target) if links < MAX_LINKS => {
                 links += 1;
                 to_go.extend(steps(&target));
             }
-            Err(_) if fs::symlink_metadata(&place).is_ok() => at = place,
+            Err(_) if fs::symlink_metadata(&location).is_ok() => at = location,
             _ => break,
         }
     }
-    places
+    locations
 }
 
 #[cfg(test)]
@@ -53,8 +53,8 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let root = fs::canonicalize(folder.path()).unwrap();
         let ways = |name: &str| -> Vec<String> {
-            let places = places(&root.join(name)).into_iter();
-            places.filter_map(|place| Some(place.strip_prefix(&root).ok()?.to_str()?.to_owned())).collect()
+            let locations = locations(&root.join(name)).into_iter();
+            locations.filter_map(|location| Some(location.strip_prefix(&root).ok()?.to_str()?.to_owned())).collect()
         };
         fs::create_dir_all(root.join("v1/in")).unwrap();
         fs::write(root.join("v1/in/a"), "").unwrap();

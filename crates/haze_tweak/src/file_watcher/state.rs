@@ -19,8 +19,8 @@ pub struct Shared {
 #[derive(Default)]
 pub struct State {
     pub files: BTreeMap<PathBuf, FileState>,
-    /// All places that decide where the files are.
-    pub places: HashSet<PathBuf>,
+    /// All locations that decide where the files are.
+    pub locations: HashSet<PathBuf>,
     /// Changed files that have not been polled.
     pub changed: BTreeSet<PathBuf>,
     /// Message to report once.
@@ -43,7 +43,7 @@ impl Shared {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Signals that something has happened at an unknown place.
+    /// Signals that something has happened at an unknown path.
     pub fn signal(&self, rewatch_all: bool) {
         self.add(&mut self.lock(), Signal { paths_changed: true, rewatch_all });
     }
@@ -51,9 +51,9 @@ impl Shared {
     /// Signals that something has happened at these paths, if one path matters.
     pub fn signal_at(&self, paths: &[PathBuf], paths_changed: bool) {
         let mut state = self.lock();
-        let Some(path) = paths.iter().find(|path| state.places.contains(*path)) else { return };
-        let is_inside = |place: &PathBuf| place.starts_with(path) && place != path;
-        let rewatch_all = paths_changed && state.places.iter().any(is_inside);
+        let Some(path) = paths.iter().find(|path| state.locations.contains(*path)) else { return };
+        let is_inside = |location: &PathBuf| location.starts_with(path) && location != path;
+        let rewatch_all = paths_changed && state.locations.iter().any(is_inside);
         self.add(&mut state, Signal { paths_changed, rewatch_all });
     }
 

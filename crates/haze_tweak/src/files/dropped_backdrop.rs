@@ -8,7 +8,7 @@ use haze_core::error::Error;
 use haze_core::settings::BackdropKind;
 use haze_preset::AssetFolders;
 
-use super::dropped_image::place_of;
+use super::dropped_image::location_of;
 use crate::platform::{IS_PAGE, asset_loading, file_io};
 use crate::session::Session;
 
@@ -31,7 +31,7 @@ impl DroppedBackdrop {
             let path = file_io::absolute(path);
             Some((path.parent()?.to_owned(), path.file_name()?.to_str()?.to_owned()))
         };
-        let (folder, name) = place_of(path, folders).or_else(elsewhere).unwrap_or_default();
+        let (folder, name) = location_of(path, folders).or_else(elsewhere).unwrap_or_default();
         if let Ok(other) = folders.find(Path::new(&name))
             && !file_io::is_same(&other, path)
         {

@@ -36,7 +36,7 @@ impl DroppedImage {
             let problem = format!("{} {problem}", path.display());
             FieldError::from_problem("dropped file", problem, expected).into()
         };
-        let Some((folder, name)) = place_of(path, folders) else {
+        let Some((folder, name)) = location_of(path, folders) else {
             let expected = "an image in the folder of the preset, or a preset file";
             return Err(refuse("is in another folder", expected));
         };
@@ -82,14 +82,14 @@ impl DroppedImage {
 }
 
 /// Returns the preset folder that contains a file, and the file's path relative to it.
-pub fn place_of(path: &Path, folders: &AssetFolders) -> Option<(PathBuf, String)> {
+pub fn location_of(path: &Path, folders: &AssetFolders) -> Option<(PathBuf, String)> {
     let path = file_io::absolute(path);
     let folders = folders.candidate_paths(Path::new(".")).map(|folder| file_io::absolute(&folder));
-    let mut places = folders.filter_map(|folder| {
+    let mut locations = folders.filter_map(|folder| {
         let name = path.strip_prefix(&folder).ok()?.to_str()?.replace('\\', "/");
         Some((folder, name))
     });
-    places.next()
+    locations.next()
 }
 
 /// Returns the material field that the file name, or a recipe beside the file, indicates: `scatter_fog.png` is for soft
@@ -105,7 +105,7 @@ fn field_of_name(path: &Path) -> Option<&'static str> {
     let has_recipe = |field: &str| file_io::exists(&path.with_extension(format!("{field}.json")));
     let is_told =
         |field: &&str| (role.is_some() && RampRole::from_field(field) == role) || *field == word || has_recipe(field);
-    picture_fields().into_iter().find(is_told)
+    image_fields().into_iter().find(is_told)
 }
 
 /// Fields to set for an image in a role, and a doubt about that role.
@@ -143,7 +143,7 @@ fn layout(sheet: &Path, material: &MaterialSources) -> SpriteLayout {
 }
 
 /// Returns the material fields that hold names of images.
-fn picture_fields() -> Vec<&'static str> {
+fn image_fields() -> Vec<&'static str> {
     let mut fields = Vec::new();
     for_each_field(&mut MaterialSources::default(), &mut |path, leaf| {
         let name = path.last().filter(|_| matches!(leaf, FieldRef::Text(_)));
@@ -180,7 +180,7 @@ mod tests {
         }
         image::RgbaImage::from_pixel(32, 64, image::Rgba([90, 120, 60, 0])).save(path("puff.six_way.png")).unwrap();
         save("opaque.png", (32, 32), |x, y| [112 + x as u8, 112 + y as u8, 240]);
-        std::fs::write(path("broken.png"), "no picture").unwrap();
+        std::fs::write(path("broken.png"), "no image").unwrap();
         let folders = AssetFolders::new(folder.path());
         let mut preset = Preset::load("column").unwrap();
         let mut drop = |name: &str| {

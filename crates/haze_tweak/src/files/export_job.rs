@@ -155,7 +155,7 @@ enum Waiting {
 
 /// Finished sheet.
 pub struct Sheet {
-    pub picture: RgbImage,
+    pub image: RgbImage,
     /// Kind, for the name of its file.
     kind: ExportKind,
     /// GPU texture, made when the sheet is first shown.
@@ -258,9 +258,9 @@ impl ExportJob {
                 self.begin(kind, path, session);
             }
             Waiting::Sheet => {
-                if let Some(Sheet { picture, .. }) = self.sheet.take() {
+                if let Some(Sheet { image, .. }) = self.sheet.take() {
                     let path = with_ending(path, ".png");
-                    self.worker.submit(move |_| write(path, picture).unwrap_or_else(ExportResult::Failed));
+                    self.worker.submit(move |_| write(path, image).unwrap_or_else(ExportResult::Failed));
                 }
             }
         }
@@ -308,7 +308,7 @@ impl ExportJob {
                     session.messages.info("export", format!("Exported {}", path.display()));
                     file_io::offer_download(&path);
                 }
-                Some(ExportResult::Sheet(picture, kind)) => self.sheet = Some(Sheet { picture, kind, texture: None }),
+                Some(ExportResult::Sheet(image, kind)) => self.sheet = Some(Sheet { image, kind, texture: None }),
                 Some(ExportResult::Failed(error)) => session.messages.error("export", error),
                 None => session.messages.error("export", "Not exported: internal error"),
             }
@@ -347,8 +347,8 @@ fn with_ending(path: PathBuf, ending: &str) -> PathBuf {
     path.with_extension(ending.trim_start_matches('.'))
 }
 
-fn write(path: PathBuf, picture: impl Into<DynamicImage>) -> Result<ExportResult, Error> {
-    write_png(&path, &picture.into(), CompressionEffort::Quick)?;
+fn write(path: PathBuf, image: impl Into<DynamicImage>) -> Result<ExportResult, Error> {
+    write_png(&path, &image.into(), CompressionEffort::Quick)?;
     Ok(ExportResult::Written(path))
 }
 
@@ -369,8 +369,8 @@ async fn make(
         }
         ExportKind::Image => {
             let one = Frames { range: 0..=0, rate: 1.0, format };
-            let picture = render_job::render_flipbook(backend, shot, &one, UVec2::ONE, path, watch).await?;
-            return write(path.clone(), picture);
+            let image = render_job::render_flipbook(backend, shot, &one, UVec2::ONE, path, watch).await?;
+            return write(path.clone(), image);
         }
         ExportKind::Sequence => {
             file_io::make_folder(path)?;
@@ -384,8 +384,8 @@ async fn make(
         }
         ExportKind::Flipbook => {
             render_job::check_flipbook(shot.size, &frames, options.cells)?;
-            let picture = render_job::render_flipbook(backend, shot, &frames, options.cells, path, watch).await?;
-            return write(path.clone(), picture);
+            let image = render_job::render_flipbook(backend, shot, &frames, options.cells, path, watch).await?;
+            return write(path.clone(), image);
         }
         ExportKind::Gif => {
             let frames = Frames { format: SCENE, ..frames };
@@ -419,7 +419,7 @@ async fn make(
     let cells: Vec<_> = cells.into_iter().map(small).collect();
     let mut sheet = render_job::render_sheet(backend, &cells, columns, Path::new(&name), watch).await?;
     sheet.add_footer(&format!("{}; {title}, {}", display_name(&name), backend.description()));
-    Ok(ExportResult::Sheet(sheet.picture, product))
+    Ok(ExportResult::Sheet(sheet.image, product))
 }
 
 /// Returns nine shots: with the present seed and the eight after it.

@@ -35,7 +35,7 @@ pub struct HotReload {
     /// Files that were last requested.
     requested_files: Asked,
     /// Loads in progress.
-    pictures: Option<Ticket>,
+    images: Option<Ticket>,
     particle_files: Option<Ticket>,
     backdrop: Option<Ticket>,
     /// Files of scene and sky that are watched.
@@ -55,7 +55,7 @@ struct Shaders {
 
 /// Result from the worker thread.
 enum ReloadResult {
-    Pictures(Box<Preset>, Result<Vec<MaterialAssets>, Error>),
+    Images(Box<Preset>, Result<Vec<MaterialAssets>, Error>),
     ParticleFiles(Box<Preset>, Result<Vec<Option<ParticleFrames>>, Error>),
     Backdrop(Box<Preset>, Result<Backdrop, Error>),
     /// With the files to watch.
@@ -105,7 +105,7 @@ impl HotReload {
             watcher: Watcher::new(move || its()).map_err(thread)?,
             worker: Worker::new("haze reload", move || wake()).map_err(thread)?,
             requested_files: requested_files(session),
-            pictures: None,
+            images: None,
             particle_files: None,
             backdrop: None,
             backdrop_files: Vec::new(),
@@ -120,7 +120,7 @@ impl HotReload {
             hot_reload.check_shaders(session, renderer);
         }
         // Files may have been written after they were read and before they were watched.
-        hot_reload.load_pictures(session);
+        hot_reload.load_images(session);
         hot_reload.load_particle_files(session);
         hot_reload.load_backdrop(session);
         Ok(hot_reload)
@@ -140,7 +140,7 @@ impl HotReload {
             // Files may have been written after they were read and before they were watched.
             changed_on_disk(session);
             mark_edits_stale(session);
-            self.load_pictures(session);
+            self.load_images(session);
             if has_particle_files {
                 self.load_particle_files(session);
             }
@@ -169,7 +169,7 @@ impl HotReload {
             }
         }
         if has_pictures {
-            self.load_pictures(session);
+            self.load_images(session);
         }
         if has_particle_files {
             // A sequence may have gained a frame, which must be watched too.
@@ -193,9 +193,9 @@ impl HotReload {
         self.backdrop_files.extend(loaded.files().map(Path::to_owned));
         let shaders = self.shaders.iter().flat_map(|shaders| shaders.files.iter().cloned());
         let folders = session.folders();
-        let pictures = relative_image_paths(&session.document.preset);
+        let images = relative_image_paths(&session.document.preset);
         // The recipe of a sprite also makes its detail image, even if the preset does not name that.
-        let beside = pictures.iter().flat_map(|picture| recipe_paths(picture).chain([detail_of(picture)]));
+        let beside = images.iter().flat_map(|image| recipe_paths(image).chain([detail_of(image)]));
         let beside = beside.flat_map(|file| folders.candidate_paths(&file).collect::<Vec<_>>());
         self.watcher.set(
             session
@@ -209,17 +209,17 @@ impl HotReload {
     }
 
     /// Loads the images that the preset names. The present ones stay if that fails.
-    fn load_pictures(&mut self, session: &Session) {
+    fn load_images(&mut self, session: &Session) {
         let preset = Box::new(session.document.preset.clone());
         let path = session.document.path().to_owned();
         let old = session.loaded_materials.clone();
         let folders = session.folders();
         let ticket = self.worker.submit(move |_| {
-            let loaded = asset_loading::pictures(&preset, &path, &folders).map(|loaded| old.reuse_equal(loaded));
-            ReloadResult::Pictures(preset, loaded)
+            let loaded = asset_loading::images(&preset, &path, &folders).map(|loaded| old.reuse_equal(loaded));
+            ReloadResult::Images(preset, loaded)
         });
         // Only the latest load counts.
-        if let Some(before) = self.pictures.replace(ticket) {
+        if let Some(before) = self.images.replace(ticket) {
             before.cancel();
         }
     }
@@ -279,9 +279,9 @@ impl HotReload {
 
     fn apply(&mut self, loaded: Option<ReloadResult>, session: &mut Session, renderer: &ViewportRenderer) {
         match loaded {
-            Some(ReloadResult::Pictures(preset, Ok(loaded))) => {
+            Some(ReloadResult::Images(preset, Ok(loaded))) => {
                 session.loaded_materials = LoadedMaterials::new(&preset, loaded);
-                session.messages.clear("pictures");
+                session.messages.clear("images");
             }
             Some(ReloadResult::ParticleFiles(preset, Ok(loaded))) => {
                 session.particle_files = LoadedParticles::new(&preset, loaded);
@@ -296,8 +296,8 @@ impl HotReload {
             }
             Some(ReloadResult::Backdrop(_, Err(error))) => session.messages.error("backdrop", error),
             // The bake writes it, and then it is read again.
-            Some(ReloadResult::Pictures(_, Err(_))) if session.sprites.is_baking() => {}
-            Some(ReloadResult::Pictures(_, Err(error))) => session.messages.error("pictures", error),
+            Some(ReloadResult::Images(_, Err(_))) if session.sprites.is_baking() => {}
+            Some(ReloadResult::Images(_, Err(error))) => session.messages.error("images", error),
             Some(ReloadResult::Shaders(files, checked)) => {
                 if let Some(shaders) = &mut self.shaders {
                     shaders.files = files;

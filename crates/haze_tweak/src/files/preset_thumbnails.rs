@@ -40,13 +40,13 @@ pub struct PresetEntry {
 pub struct PresetThumbnail {
     pub name: String,
     pub description: String,
-    pub picture: egui::TextureHandle,
+    pub image: egui::TextureHandle,
 }
 
 struct RenderedPreset {
     name: String,
     description: String,
-    picture: RgbImage,
+    image: RgbImage,
 }
 
 impl PresetThumbnails {
@@ -97,9 +97,9 @@ impl PresetThumbnails {
             let Some((path, drawn)) = done else { continue };
             match drawn {
                 Ok(drawn) => {
-                    let picture = egui::ColorImage::from_rgb([SIZE.x as usize, SIZE.y as usize], &drawn.picture);
-                    let picture = context.load_texture(drawn.name.clone(), picture, egui::TextureOptions::LINEAR);
-                    let shown = PresetThumbnail { name: drawn.name, description: drawn.description, picture };
+                    let image = egui::ColorImage::from_rgb([SIZE.x as usize, SIZE.y as usize], &drawn.image);
+                    let image = context.load_texture(drawn.name.clone(), image, egui::TextureOptions::LINEAR);
+                    let shown = PresetThumbnail { name: drawn.name, description: drawn.description, image };
                     if let Some(entry) = self.entries.iter_mut().find(|entry| entry.path == path) {
                         entry.shown = Some(shown);
                     }
@@ -118,7 +118,7 @@ impl PresetThumbnails {
 async fn draw(path: &Path, assets: Option<PathBuf>) -> Result<RenderedPreset, Error> {
     let folders = AssetFolders::for_preset_file(path).with_shared(assets);
     let shot = asset_loading::shot(path, &folders, SIZE)?;
-    let picture = render_job::open_thumbnail_backend()?.render_async(&shot).await?;
-    let picture = tonemap(&picture, &shot);
-    Ok(RenderedPreset { picture, name: shot.preset.name, description: shot.preset.description })
+    let image = render_job::open_thumbnail_backend()?.render_async(&shot).await?;
+    let image = tonemap(&image, &shot);
+    Ok(RenderedPreset { image, name: shot.preset.name, description: shot.preset.description })
 }

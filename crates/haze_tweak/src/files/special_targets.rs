@@ -101,9 +101,9 @@ fn ramp(path: &Path) -> Result<(), Error> {
 fn sprite(path: &Path) -> Result<(), Error> {
     let recipe = SpriteRecipe { size: 16, columns: 1, rows: 1, ..recipe_of_built_in("puff")? };
     let baked = recipe.bake(|_| Ok::<_, FieldError>(()))?;
-    let picture = folder_of(path).join("mine.png");
-    let files = sprite_source::encode(&picture, recipe.layout(), baked)?;
-    sprite_source::write(&picture, &recipe, &files)
+    let image = folder_of(path).join("mine.png");
+    let files = sprite_source::encode(&image, recipe.layout(), baked)?;
+    sprite_source::write(&image, &recipe, &files)
 }
 
 fn copy(path: &Path) -> Result<(), Error> {
@@ -168,8 +168,8 @@ fn the_window_replaces_only_files_and_writes_its_state_through_no_link() {
             symlink(&target, &path).unwrap();
             let before = fs::symlink_metadata(&target).unwrap();
             let case = format!("{file} to {}", target.display());
-            let place = path.clone();
-            let written = within_a_minute(move || write(&place).map_err(|error| error.to_string()));
+            let link = path.clone();
+            let written = within_a_minute(move || write(&link).map_err(|error| error.to_string()));
             let written = written.unwrap_or_else(|| panic!("{case}: waits for ever"));
             let after = fs::symlink_metadata(&target).unwrap();
             assert!(path.is_symlink(), "{case}");

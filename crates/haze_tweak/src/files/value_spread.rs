@@ -55,7 +55,7 @@ fn five_values(value: f32, low: f32, high: f32, needs_log_slider: bool) -> [f32;
     /// Values for a field that is 0.
     const STEPS: [f32; 5] = [0.0, 0.25, 0.5, 1.0, 2.0];
     if !needs_log_slider {
-        return PLACES.map(|place| low + place * (high - low));
+        return PLACES.map(|position| low + position * (high - low));
     }
     let size = value.abs();
     if size < 1.0e-6 {
@@ -64,7 +64,7 @@ fn five_values(value: f32, low: f32, high: f32, needs_log_slider: bool) -> [f32;
     let (low, high) = if value < 0.0 { (-high, -low) } else { (low, high) };
     let least = (0.25 * size).max(low);
     let most = (4.0 * size).min(high);
-    PLACES.map(|place| (least * (most / least).powf(place)).copysign(value))
+    PLACES.map(|position| (least * (most / least).powf(position)).copysign(value))
 }
 
 /// Formats a number with four significant digits.

@@ -26,16 +26,16 @@ impl Screenshot {
         let Some(path) = session.screenshot.clone() else { return };
         self.frames += 1;
         let taken = self.taken.lock().unwrap_or_else(PoisonError::into_inner).take();
-        if let Some(picture) = taken {
-            if let Err(error) = write(&path, &picture) {
+        if let Some(image) = taken {
+            if let Err(error) = write(&path, &image) {
                 session.messages.error("screenshot", error);
             }
             ui.ctx().send_viewport_cmd(egui::ViewportCommand::Close);
         } else if self.frames == SETTLED_FRAMES {
             let taken = self.taken.clone();
             let context = ui.ctx().clone();
-            ui.ctx().request_screenshot(move |picture| {
-                *taken.lock().unwrap_or_else(PoisonError::into_inner) = Some(picture);
+            ui.ctx().request_screenshot(move |image| {
+                *taken.lock().unwrap_or_else(PoisonError::into_inner) = Some(image);
                 context.request_repaint();
             });
         }
@@ -43,9 +43,9 @@ impl Screenshot {
     }
 }
 
-pub(super) fn write(path: &Path, picture: &egui::ColorImage) -> Result<(), Error> {
-    let [width, height] = picture.size.map(|side| side as u32);
-    let bytes = picture.pixels.iter().flat_map(|pixel| [pixel.r(), pixel.g(), pixel.b()]).collect();
-    let picture = RgbImage::from_raw(width, height, bytes).unwrap_or_default();
-    Ok(write_png(path, &picture.into(), CompressionEffort::Small)?)
+pub(super) fn write(path: &Path, image: &egui::ColorImage) -> Result<(), Error> {
+    let [width, height] = image.size.map(|side| side as u32);
+    let bytes = image.pixels.iter().flat_map(|pixel| [pixel.r(), pixel.g(), pixel.b()]).collect();
+    let image = RgbImage::from_raw(width, height, bytes).unwrap_or_default();
+    Ok(write_png(path, &image.into(), CompressionEffort::Small)?)
 }

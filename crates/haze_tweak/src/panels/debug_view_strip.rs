@@ -47,16 +47,16 @@ pub fn debug_view_strip(ui: &mut Ui, session: &mut Session, renderer: &ViewportR
                 arrow(ui, Vec2::new(arrow_width, size.y));
             }
             let (rect, response) = ui.allocate_exact_size(size + Vec2::new(0.0, NAME), Sense::click());
-            let picture = egui::Rect::from_min_size(rect.min, size);
-            renderer.show_debug_view(ui, picture, Shot { debug_view: view, ..shot.clone() });
+            let image = egui::Rect::from_min_size(rect.min, size);
+            renderer.show_debug_view(ui, image, Shot { debug_view: view, ..shot.clone() });
             let is_shown = session.view.debug_view == view;
             response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, is_shown, label));
             let visuals = ui.style().interact_selectable(&response, is_shown);
             if is_shown || response.hovered() || response.has_focus() {
                 let stroke = egui::Stroke::new(2.0, visuals.bg_fill);
-                ui.painter().rect_stroke(picture, 0.0, stroke, egui::StrokeKind::Inside);
+                ui.painter().rect_stroke(image, 0.0, stroke, egui::StrokeKind::Inside);
             }
-            let name = egui::Rect::from_min_max(picture.left_bottom(), rect.max);
+            let name = egui::Rect::from_min_max(image.left_bottom(), rect.max);
             let text = egui::WidgetText::from(egui::RichText::new(label).small());
             let wrap = Some(egui::TextWrapMode::Truncate);
             // A long label extends into the space of the arrows.

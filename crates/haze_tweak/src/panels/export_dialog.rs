@@ -27,8 +27,8 @@ pub fn panel(ui: &Ui, export_job: &mut ExportJob, session: &mut Session) {
     let window = if is_long && !is_open { window } else { window.open(&mut is_open) };
     window.show(ui.ctx(), |ui| match progress {
         Some((done, count)) => {
-            let share = done as f32 / count.max(1) as f32;
-            ui.add(egui::ProgressBar::new(share).text(format!("{done} of {count}")));
+            let fraction = done as f32 / count.max(1) as f32;
+            ui.add(egui::ProgressBar::new(fraction).text(format!("{done} of {count}")));
             if ui.button("Stop").on_hover_text("Files that are already written stay").clicked() {
                 export_job.stop();
             }
@@ -217,12 +217,12 @@ fn export_options(ui: &mut Ui, export_job: &mut ExportJob, session: &mut Session
 }
 
 fn sheet(ui: &Ui, export_job: &mut ExportJob, session: &mut Session) {
-    let Some(Sheet { picture, texture, .. }) = &mut export_job.sheet else { return };
+    let Some(Sheet { image, texture, .. }) = &mut export_job.sheet else { return };
     // Uploaded once.
     let texture = texture.get_or_insert_with(|| {
-        let size = [picture.width() as usize, picture.height() as usize];
-        let picture = egui::ColorImage::from_rgb(size, picture);
-        ui.ctx().load_texture("sheet", picture, egui::TextureOptions::LINEAR)
+        let size = [image.width() as usize, image.height() as usize];
+        let image = egui::ColorImage::from_rgb(size, image);
+        ui.ctx().load_texture("sheet", image, egui::TextureOptions::LINEAR)
     });
     let mut is_open = true;
     let mut is_saved = false;

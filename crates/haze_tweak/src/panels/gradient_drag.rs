@@ -31,13 +31,13 @@ pub fn grip(ui: &mut Ui, name: &str, gradient: DraggedGradient) {
     );
 }
 
-/// Marks the place of an editor while a gradient is over it, and returns the gradient that is dropped there.
-pub fn dropped(ui: &Ui, place: Rect) -> Option<DraggedGradient> {
-    if !DragAndDrop::has_payload_of_type::<DraggedGradient>(ui.ctx()) || !ui.rect_contains_pointer(place) {
+/// Marks the position of an editor while a gradient is over it, and returns the gradient that is dropped there.
+pub fn dropped(ui: &Ui, rect: Rect) -> Option<DraggedGradient> {
+    if !DragAndDrop::has_payload_of_type::<DraggedGradient>(ui.ctx()) || !ui.rect_contains_pointer(rect) {
         return None;
     }
     let stroke = Stroke::new(2.0, ui.visuals().selection.stroke.color);
-    ui.painter().rect_stroke(place.expand(2.0), 3.0, stroke, StrokeKind::Outside);
+    ui.painter().rect_stroke(rect.expand(2.0), 3.0, stroke, StrokeKind::Outside);
     let is_released = ui.input(|input| input.pointer.any_released());
     let dropped = is_released.then(|| DragAndDrop::take_payload::<DraggedGradient>(ui.ctx())).flatten()?;
     Some((*dropped).clone())

@@ -179,8 +179,8 @@ mod tests {
             for (hint, name, _) in HINTS {
                 assert_eq!(shown(&harness), Some(hint));
                 if let Some(folder) = &look {
-                    let picture = testing::picture(&mut harness);
-                    picture.save(folder.join(format!("hint_{name}_{}.png", size.x))).unwrap();
+                    let image = testing::screenshot(&mut harness);
+                    image.save(folder.join(format!("hint_{name}_{}.png", size.x))).unwrap();
                 }
                 let view = harness.get_by_label("viewport").rect();
                 let middle = Rect::from_center_size(view.center(), view.size() / 4.0);

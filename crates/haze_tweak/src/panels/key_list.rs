@@ -26,7 +26,7 @@ pub fn panel(ui: &Ui, session: &mut Session) {
         egui::ScrollArea::vertical().max_height(room.y).min_scrolled_height(room.y).show(ui, |ui| {
             let gap = 24.0;
             // In a small window, long lines wrap.
-            let columns = [0.4, 0.6].map(|share| share * (room.x - gap));
+            let columns = [0.4, 0.6].map(|fraction| fraction * (room.x - gap));
             egui::Grid::new("keys").num_columns(2).spacing([gap, 4.0]).striped(true).show(ui, |ui| {
                 let keys = ACTIONS.iter().map(|entry| (ui.ctx().format_shortcut(&entry.keys), entry.name));
                 let keys: Vec<_> = keys.collect();

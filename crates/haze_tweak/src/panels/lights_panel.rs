@@ -36,8 +36,8 @@ pub fn panel(
         ui.horizontal(|ui| entry(ui, index, light, shown));
     }
     ui.horizontal_wrapped(|ui| tools(ui, preset, shown, smoke, image_size));
-    let place = smoke.bounds().center();
-    let all: f32 = preset.lights.iter().map(|light| luminance(irradiance(light, place))).sum();
+    let position = smoke.bounds().center();
+    let all: f32 = preset.lights.iter().map(|light| luminance(irradiance(light, position))).sum();
     let selected = shown.selected.and_then(|index| Some((index, preset.lights.get_mut(index)?)));
     let Some((index, light)) = selected else {
         ui.weak(if preset.lights.is_empty() { "This preset has no lights." } else { "Select a light to edit it." });
@@ -46,7 +46,7 @@ pub fn panel(
     ui.separator();
     let before = light.role;
     role(ui, context, index, light);
-    at_smoke(ui, context, index, light, place, all);
+    at_smoke(ui, context, index, light, position, all);
     if light.kind != LightKind::Point {
         angles(ui, context, index, light);
     }
@@ -101,10 +101,17 @@ const AT_SMOKE: &str = "Light that arrives at the center of the smoke, in one un
      that is as bright there. Shadows and other smoke are left out. Times π it is lux, if intensities are candela and lux \
      divided by π. A change sets the intensity.";
 
-/// Draws the brightness of a light at the smoke, which sets its intensity. `place`: center of the smoke. `all`: brightness of all
-/// lights there.
-fn at_smoke(ui: &mut Ui, context: &mut RowContext<'_>, index: usize, light: &mut Light, place: glam::Vec3, all: f32) {
-    let mut brightness = luminance(irradiance(light, place));
+/// Draws the brightness of a light at the smoke, which sets its intensity. `position`: center of the smoke. `all`: brightness
+/// of all lights there.
+fn at_smoke(
+    ui: &mut Ui,
+    context: &mut RowContext<'_>,
+    index: usize,
+    light: &mut Light,
+    position: glam::Vec3,
+    all: f32,
+) {
+    let mut brightness = luminance(irradiance(light, position));
     let path = format!("lights[{index}].intensity");
     let row = Row {
         name: "at the smoke",
@@ -115,17 +122,17 @@ fn at_smoke(ui: &mut Ui, context: &mut RowContext<'_>, index: usize, light: &mut
         key: None,
         reason_without_effect: (light.intensity > 0.0 && brightness <= 0.0).then_some("the smoke is out of reach"),
     };
-    let share = brightness / all;
+    let fraction = brightness / all;
     let refused = &mut context.refused;
     let request = row.show(ui, |ui, label| {
         if value_control::number(ui, label, &mut brightness, &(0.0..=1.0e9), Some((0.0, 10.0)), "", refused) {
-            set_brightness(light, place, brightness);
+            set_brightness(light, position, brightness);
         }
     });
     context.requests.extend(request.map(|request| (request, path)));
-    if share.is_finite() && row.reason_without_effect.is_none() {
+    if fraction.is_finite() && row.reason_without_effect.is_none() {
         rows::note(ui, if context.second.is_some() { 2.0 } else { 1.0 }, |ui| {
-            let text = egui::RichText::new(format!("{:.0} % of all lights there", 100.0 * share)).weak();
+            let text = egui::RichText::new(format!("{:.0} % of all lights there", 100.0 * fraction)).weak();
             // A longer line would widen a narrow panel.
             ui.add(egui::Label::new(text).truncate()).on_hover_text(AT_SMOKE);
         });
@@ -261,24 +268,24 @@ mod tests {
         let mut harness = window("column", Vec2::new(1000.0, 640.0), Theme::Dark);
         harness.get_by_label("Light").click();
         harness.run_steps(3);
-        let mut shares = 0.0;
+        let mut fractions = 0.0;
         for (light, name) in ["Key (Point 1)", "Fill (Sun 2)", "Practical (Point 3)"].into_iter().enumerate() {
             harness.get_by_label(name).click();
             harness.run_steps(3);
-            let share = harness.get_by_label_contains("% of all lights there").accesskit_node().value().unwrap();
-            shares += share.split(' ').next().unwrap().parse::<f32>().unwrap();
+            let fraction = harness.get_by_label_contains("% of all lights there").accesskit_node().value().unwrap();
+            fractions += fraction.split(' ').next().unwrap().parse::<f32>().unwrap();
             let sliders = harness.get_all_by_label("At the smoke");
             let slider = sliders.into_iter().find(|node| node.accesskit_node().role() == Role::Slider).unwrap();
             slider.set_value_accesskit(2.0);
             harness.run_steps(3);
             let session = &harness.state().session;
-            let place = session.smoke.bounds().center();
-            let brightness = luminance(irradiance(&session.document.preset.lights[light], place));
+            let position = session.smoke.bounds().center();
+            let brightness = luminance(irradiance(&session.document.preset.lights[light], position));
             assert!((brightness - 2.0).abs() < 0.01, "{name}: {brightness}");
             harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
             harness.run_steps(3);
         }
-        assert!((shares - 100.0).abs() < 2.0, "{shares}");
+        assert!((fractions - 100.0).abs() < 2.0, "{fractions}");
         assert!(!harness.state().session.document.is_dirty());
     }
 
@@ -289,7 +296,7 @@ mod tests {
         harness.run_steps(3);
         harness.get_by_label("Key (Point 1)").click();
         harness.run_steps(3);
-        let place = harness.get_by_label("Add light").rect();
+        let rect = harness.get_by_label("Add light").rect();
         let wells: Vec<_> = harness.get_all_by_role(Role::ColorWell).collect();
         // The color of the selected light, in the middle of the window.
         wells[3].click();
@@ -299,7 +306,7 @@ mod tests {
         harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
         harness.event(egui::Event::Text("#00ff00".into()));
         harness.run_steps(20);
-        assert_eq!(harness.get_by_label("Add light").rect(), place);
+        assert_eq!(harness.get_by_label("Add light").rect(), rect);
         harness.key_press(Key::Enter);
         harness.run_steps(3);
         assert_eq!(harness.state().session.document.preset.lights[0].color, glam::Vec3::Y);

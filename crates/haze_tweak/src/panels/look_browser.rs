@@ -77,14 +77,14 @@ fn cell(ui: &mut Ui, entry: &LookEntry, is_chosen: bool, view: glam::UVec2) -> b
     if is_chosen || response.hovered() || response.has_focus() {
         ui.painter().rect_filled(rect, 3.0, visuals.bg_fill);
     }
-    let place = egui::Rect::from_min_size(rect.min + Vec2::splat(MARGIN), size);
-    match &entry.picture {
-        Some(picture) => egui::Image::new(picture).paint_at(ui, place),
-        None => _ = ui.painter().rect_filled(place, 0.0, ui.visuals().extreme_bg_color),
+    let image_rect = egui::Rect::from_min_size(rect.min + Vec2::splat(MARGIN), size);
+    match &entry.image {
+        Some(image) => egui::Image::new(image).paint_at(ui, image_rect),
+        None => _ = ui.painter().rect_filled(image_rect, 0.0, ui.visuals().extreme_bg_color),
     }
     let text = egui::WidgetText::from(entry.name.as_str());
     let text = text.into_galley(ui, Some(egui::TextWrapMode::Truncate), size.x, egui::TextStyle::Small);
-    ui.painter().galley(place.left_bottom() + Vec2::new(0.0, 2.0), text, visuals.text_color());
+    ui.painter().galley(image_rect.left_bottom() + Vec2::new(0.0, 2.0), text, visuals.text_color());
     response.on_hover_text(&entry.name).clicked()
 }
 
@@ -101,7 +101,7 @@ mod tests {
 
     fn rendered(harness: &Harness<'_, Window>) -> usize {
         let looks = harness.state().session.looks.shown();
-        looks.map_or(0, |looks| looks.entries.iter().filter(|entry| entry.picture.is_some()).count())
+        looks.map_or(0, |looks| looks.entries.iter().filter(|entry| entry.image.is_some()).count())
     }
 
     fn wait_for(harness: &mut Harness<'_, Window>, count: usize) {

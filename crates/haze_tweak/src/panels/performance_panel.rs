@@ -74,17 +74,17 @@ fn times(ui: &mut Ui, timings: &FrameTimings) {
 fn plot(ui: &mut Ui, timings: &FrameTimings) {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), PLOT), Sense::hover());
     let limit = timings.is_held.then_some(timings.budget.milliseconds);
-    let sums = timings.frame_times.iter().map(|picture| picture.iter().sum::<f32>());
+    let sums = timings.frame_times.iter().map(|image| image.iter().sum::<f32>());
     let most = sums.fold(limit.unwrap_or(0.0), f32::max).max(0.001) * 1.1;
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "Time of the last frames"));
     let painter = ui.painter_at(rect);
     painter.rect_filled(rect, 2.0, ui.visuals().extreme_bg_color);
     let height = |ms: f32| ms / most * rect.height();
     let width = rect.width() / MAX_KEPT_IMAGES as f32;
-    for (index, picture) in timings.frame_times.iter().enumerate() {
+    for (index, image) in timings.frame_times.iter().enumerate() {
         let left = rect.right() - (timings.frame_times.len() - index) as f32 * width;
         let mut bottom = rect.bottom();
-        for (ms, color) in picture.iter().zip(COLORS.iter().cycle()) {
+        for (ms, color) in image.iter().zip(COLORS.iter().cycle()) {
             let top = bottom - height(*ms);
             painter.rect_filled(Rect::from_min_max(pos2(left, top), pos2(left + width, bottom)), 0.0, *color);
             bottom = top;
@@ -229,12 +229,12 @@ mod tests {
 
     use super::*;
     use crate::window::Window;
-    use crate::window::testing::{measured, picture, window};
+    use crate::window::testing::{measured, screenshot, window};
 
     /// Opens the tab and waits until nothing more is measured.
     fn settle(harness: &mut Harness<'_, Window>) {
         for _ in 0..600 {
-            picture(harness);
+            screenshot(harness);
             if !harness.ctx.has_requested_repaint() {
                 return;
             }
@@ -249,7 +249,7 @@ mod tests {
     #[test]
     fn every_pass_is_listed_by_name_only_while_the_tab_is_open() {
         let mut harness = measured("column", vec2(1000.0, 700.0));
-        picture(&mut harness);
+        screenshot(&mut harness);
         assert!(harness.state_mut().session_mut().timings.frame_times.is_empty());
         harness.get_by_label("Cost").click();
         settle(&mut harness);

@@ -45,16 +45,16 @@ fn cell(ui: &mut Ui, entry: &PresetEntry) -> bool {
     let name = shown.map_or_else(|| file_name(&entry.path), |shown| shown.name.clone());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, name.clone()));
     let visuals = ui.style().interact(&response);
-    let place =
+    let image_rect =
         egui::Rect::from_min_size(rect.min + Vec2::splat(MARGIN), CELL - Vec2::new(2.0 * MARGIN, NAME + MARGIN));
     ui.painter().rect(rect, visuals.corner_radius, visuals.weak_bg_fill, visuals.bg_stroke, egui::StrokeKind::Inside);
     match &entry.shown {
-        Some(shown) => egui::Image::new(&shown.picture).paint_at(ui, place),
-        None => _ = ui.painter().rect_filled(place, 0.0, ui.visuals().extreme_bg_color),
+        Some(shown) => egui::Image::new(&shown.image).paint_at(ui, image_rect),
+        None => _ = ui.painter().rect_filled(image_rect, 0.0, ui.visuals().extreme_bg_color),
     }
     let text = egui::WidgetText::from(name);
-    let text = text.into_galley(ui, Some(egui::TextWrapMode::Truncate), place.width(), egui::TextStyle::Body);
-    ui.painter().galley(place.left_bottom(), text, visuals.text_color());
+    let text = text.into_galley(ui, Some(egui::TextWrapMode::Truncate), image_rect.width(), egui::TextStyle::Body);
+    ui.painter().galley(image_rect.left_bottom(), text, visuals.text_color());
     let description = entry.shown.as_ref().map_or("", |shown| shown.description.as_str());
     let tooltip = format!("{description}\n{}", entry.path.display());
     response.on_hover_text(tooltip.trim()).clicked()

@@ -41,7 +41,7 @@ pub fn has_stops(session: &mut Session, ramp: NamedRamp<'_>) -> bool {
     matches!(session.ramps.source(ramp.name, &folders), RampOrigin::Recipe(_))
 }
 
-/// Draws the editor of a ramp, and returns the place under the pointer; the outer `None` means that the ramp has no stops.
+/// Draws the editor of a ramp, and returns the position under the pointer; the outer `None` means that the ramp has no stops.
 /// Histograms are shown for the axis of the edited gradient: rows run across, the gradient that multiplies
 /// them runs upwards.
 pub fn editor(
@@ -67,7 +67,7 @@ pub fn editor(
     let options = DisplayOptions { blend: recipe.blend, histograms: &histograms, marks };
     let mut shown = shown(&recipe, *index)?;
     let edited = ui.push_id(ramp.field, |ui| editor.show(ui, &mut shown, &options));
-    let place = edited.response.rect;
+    let rect = edited.response.rect;
     let edited = edited.inner;
     let index = *index;
     match &simplified {
@@ -80,7 +80,7 @@ pub fn editor(
         Some(Err(error)) => session.messages.error("simplify", error),
         None => {}
     }
-    if let Some(dropped) = gradient_drag::dropped(ui, place) {
+    if let Some(dropped) = gradient_drag::dropped(ui, rect) {
         session.document.name_gradient_step(ramp.name, "copy a gradient");
         if recipe.rows.len() == 1 && recipe.times.is_empty() {
             recipe.blend = dropped.blend;
@@ -102,7 +102,7 @@ pub fn editor(
         }
         is_changed = true;
     }
-    // The gradient that multiplies the rows has no place of its own.
+    // The gradient that multiplies the rows has no position of its own.
     let row = recipe.rows.get(index).map(|row| row.at);
     if is_changed {
         let ramps = &mut session.document.recipes.ramps;
@@ -171,8 +171,8 @@ fn choose(ui: &mut Ui, recipe: &mut RampRecipe, index: &mut usize) -> bool {
     let before = recipe.rows.clone();
     ui.horizontal_wrapped(|ui| {
         ui.label("Row at");
-        for (place, of) in recipe.rows.iter().enumerate() {
-            ui.selectable_value(index, place, format!("{:.2}", of.at)).on_hover_text("Position on the vertical axis");
+        for (rect, of) in recipe.rows.iter().enumerate() {
+            ui.selectable_value(index, rect, format!("{:.2}", of.at)).on_hover_text("Position on the vertical axis");
         }
         if has_times {
             let about = "A gradient along the vertical axis that multiplies the rows";

@@ -11,13 +11,13 @@ use haze_reference::SystemProbe;
 
 use super::look_browser;
 use super::ramp_stops::{self, AxisSamples, Bins, Mark, NamedRamp};
-use super::rows::picture_gallery::gallery;
+use super::rows::image_gallery::gallery;
 use crate::document::display_names::display_name;
 use crate::document::ramp_edits::ramp_name;
 use crate::session::Session;
 use crate::session::inspection::PixelValues;
 use crate::session::light_view::name_in_image;
-use crate::session::ramp_survey::{Histogram, RampPlace, RampSurvey, SIDE, TwoAxisRamp};
+use crate::session::ramp_survey::{Histogram, RampPosition, RampSurvey, SIDE, TwoAxisRamp};
 use crate::viewport_renderer::compared_side::ComparedSide;
 
 /// Heights of a ramp and of a histogram, points.
@@ -38,24 +38,24 @@ const LIGHT_COLORS: [Color32; 6] = [
     Color32::from_rgb(120, 120, 240),
 ];
 
-/// Colors of the sampled places over dark and over light parts of a ramp with two axes.
+/// Colors of the sampled positions over dark and over light parts of a ramp with two axes.
 const SAMPLED_OVER_DARK: Color32 = Color32::from_rgb(120, 210, 255);
 const SAMPLED_OVER_LIGHT: Color32 = Color32::from_rgb(0, 50, 130);
 /// Linear luminance that separates them.
 const MIDDLE_GRAY: f32 = 0.18;
 
-/// Draws the tab. Returns the place on a ramp under the pointer.
-pub fn panel(ui: &mut Ui, session: &mut Session, index: usize) -> Option<RampPlace> {
+/// Draws the tab. Returns the position on a ramp under the pointer.
+pub fn panel(ui: &mut Ui, session: &mut Session, index: usize) -> Option<RampPosition> {
     let system = &session.document.preset.systems.get(index)?.clone();
     let material = &session.materials().into_iter().nth(index)?;
-    let is_first = |values: &&PixelValues| values.side == ComparedSide::First && session.inspect.place().is_some();
+    let is_first = |values: &&PixelValues| values.side == ComparedSide::First && session.inspect.position().is_some();
     let values = session.inspect.pixel_values.as_ref().filter(is_first);
     let probe = values.and_then(|values| values.probe.systems.iter().find(|probe| probe.system == index)).cloned();
     let filter = system.settings.ramp_filter;
     let is_forward = system.settings.is_forward();
     let survey = session.inspect.survey.clone().filter(|_| !is_forward);
     let lookups = Lookups { system: index, survey: survey.as_deref(), probe: probe.as_ref(), is_forward };
-    let mut ramp_place = None;
+    let mut ramp_position = None;
     ui.weak(
         "Hover a ramp to highlight the smoke that uses that color. Hover the smoke to mark its place on the ramps.",
     );
@@ -82,23 +82,23 @@ pub fn panel(ui: &mut Ui, session: &mut Session, index: usize) -> Option<RampPla
         let spoken = display_name(field);
         let ink = ui.visuals().text_color();
         if let Some(two_axes) = two_axes(field, material) {
-            ramp_place = ramp_place.or(two_axis_ramp(ui, session, ramp, &two_axes, filter, &lookups));
+            ramp_position = ramp_position.or(two_axis_ramp(ui, session, ramp, &two_axes, filter, &lookups));
             continue;
         }
         let lights = match lookups.survey.filter(|_| is_diffuse(field)) {
             Some(survey) => survey.by_light(index),
             None => Vec::new(),
         };
-        let (picture, mut bins, marks) = ramp_samples(field, material, &lookups, &lights, ink);
+        let (image, mut bins, marks) = ramp_samples(field, material, &lookups, &lights, ink);
         if bins.is_empty() && !is_not_counted(field) && !is_forward {
             // Reserves the space of the histogram, so that nothing moves under the pointer when it arrives.
             bins.push((ink, Vec::new()));
         }
         let across = (bins, marks);
         let edited = ramp_stops::editor(ui, session, ramp, &across, &AxisSamples::default());
-        let at = edited.map(|place| place.map(|place| place.x)).unwrap_or_else(|| {
-            let at = strip(ui, &spoken, picture, filter, &across.1);
-            let rows = picture.size().y;
+        let at = edited.map(|position| position.map(|position| position.x)).unwrap_or_else(|| {
+            let at = strip(ui, &spoken, image, filter, &across.1);
+            let rows = image.size().y;
             if is_diffuse(field) && rows > 1 {
                 ui.weak(format!("{rows} rows by amount: thin smoke at the bottom"));
             }
@@ -113,15 +113,15 @@ pub fn panel(ui: &mut Ui, session: &mut Session, index: usize) -> Option<RampPla
                 legend(ui, session, &lights);
             }
         }
-        ramp_place = ramp_place.or(at.and_then(|at| match field {
-            "diffuse_ramp" | "backlight_ramp" => Some(RampPlace::Diffuse(at)),
-            "soft_scatter_ramp" => Some(RampPlace::SoftScatter(at)),
-            "coverage_ramp" => Some(RampPlace::Coverage(at)),
+        ramp_position = ramp_position.or(at.and_then(|at| match field {
+            "diffuse_ramp" | "backlight_ramp" => Some(RampPosition::Diffuse(at)),
+            "soft_scatter_ramp" => Some(RampPosition::SoftScatter(at)),
+            "coverage_ramp" => Some(RampPosition::Coverage(at)),
             _ => None,
         }));
     }
     session.follow_ramps(true);
-    ramp_place
+    ramp_position
 }
 
 /// Lookups of a system's ramps: by the image, and by the probed pixel.
@@ -327,11 +327,11 @@ fn two_axis_ramp(
     two_axes: &TwoAxes<'_>,
     filter: RampFilter,
     lookups: &Lookups<'_>,
-) -> Option<RampPlace> {
+) -> Option<RampPosition> {
     let ramp = two_axes.ramp;
     let ink = ui.visuals().text_color();
     let width = ui.available_width().min(PLANE_WIDTH);
-    let place = plane(ui, &display_name(named.field), width, two_axes, filter, lookups);
+    let position = plane(ui, &display_name(named.field), width, two_axes, filter, lookups);
     let histograms = |axis| lookups.survey.map_or_else(Vec::new, |survey| survey.along(axis, ramp, lookups.system));
     let marks: Vec<_> = lookups.probe.into_iter().flat_map(|probe| ramp.lookups(probe)).collect();
     let samples = |axis: usize, histograms: &[Histogram]| {
@@ -355,7 +355,7 @@ fn two_axis_ramp(
     if ramp != TwoAxisRamp::Fire && !lookups.is_forward {
         legend(ui, session, &of_lights);
     }
-    place.or(edited.map(|at| RampPlace::TwoAxes(ramp, at)))
+    position.or(edited.map(|at| RampPosition::TwoAxes(ramp, at)))
 }
 
 /// Draws the title of a ramp and the choice of its image.
@@ -380,7 +380,7 @@ fn mark_color(light: Option<usize>) -> Color32 {
     bins_color(light, Color32::WHITE)
 }
 
-/// Allocates space for an image with a name. Returns the pointer position in it, in shares of its sides.
+/// Allocates space for an image with a name. Returns the pointer position in it, in fractions of its sides.
 fn space(ui: &mut Ui, size: Vec2, name: &str) -> (Rect, Option<Vec2>) {
     let (rect, response): (Rect, Response) = ui.allocate_exact_size(size, Sense::hover());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, name));
@@ -392,7 +392,7 @@ fn strip(ui: &mut Ui, name: &str, ramp: &Ramp, filter: RampFilter, marks: &[(f32
     let rows = ramp.size().y;
     let height = if rows > 1 { 2.0 * RAMP_HEIGHT } else { RAMP_HEIGHT };
     let (rect, at) = space(ui, Vec2::new(ui.available_width(), height), name);
-    picture(ui, rect, UVec2::new(128, rows.min(MAX_STRIP_ROWS)), |at| {
+    paint_cells(ui, rect, UVec2::new(128, rows.min(MAX_STRIP_ROWS)), |at| {
         sample_ramp_2d(ramp, filter, glam::Vec2::new(at.x, 1.0 - at.y))
     });
     for &(coordinate, color) in marks {
@@ -404,8 +404,8 @@ fn strip(ui: &mut Ui, name: &str, ramp: &Ramp, filter: RampFilter, marks: &[(f32
     at.map(|at| at.x)
 }
 
-/// Draws a linear image from a function of the position, in shares of its sides, cell by cell.
-fn picture(ui: &Ui, rect: Rect, cells: UVec2, color: impl Fn(glam::Vec2) -> glam::Vec3) {
+/// Draws a linear image from a function of the position, in fractions of its sides, cell by cell.
+fn paint_cells(ui: &Ui, rect: Rect, cells: UVec2, color: impl Fn(glam::Vec2) -> glam::Vec3) {
     let mut mesh = Mesh::default();
     let side = rect.size() / Vec2::new(cells.x as f32, cells.y as f32);
     for y in 0..cells.y {
@@ -439,7 +439,7 @@ fn legend(ui: &mut Ui, session: &Session, histograms: &[Histogram]) {
     });
 }
 
-/// Draws a ramp with two axes, the second upwards, and the sampled places over it.
+/// Draws a ramp with two axes, the second upwards, and the sampled positions over it.
 fn plane(
     ui: &mut Ui,
     name: &str,
@@ -447,10 +447,10 @@ fn plane(
     two_axes: &TwoAxes<'_>,
     filter: RampFilter,
     lookups: &Lookups<'_>,
-) -> Option<RampPlace> {
+) -> Option<RampPosition> {
     let TwoAxes { ramp, image, .. } = *two_axes;
     let (rect, at) = space(ui, Vec2::new(width, 0.6 * width), name);
-    picture(ui, rect, UVec2::splat(48), |at| sample_ramp_2d(image, filter, glam::Vec2::new(at.x, 1.0 - at.y)));
+    paint_cells(ui, rect, UVec2::splat(48), |at| sample_ramp_2d(image, filter, glam::Vec2::new(at.x, 1.0 - at.y)));
     let mut mesh = Mesh::default();
     let cell = rect.size() / SIDE as f32;
     let density = lookups.survey.map_or_else(Vec::new, |survey| survey.over_both_axes(ramp, lookups.system));
@@ -460,13 +460,13 @@ fn plane(
         let below = sample_ramp_2d(image, filter, (glam::Vec2::new(column, row) + 0.5) / SIDE as f32);
         let color = if luminance(below) < MIDDLE_GRAY { SAMPLED_OVER_DARK } else { SAMPLED_OVER_LIGHT };
         let corner = rect.min + Vec2::new(column, (SIDE - 1) as f32 - row) * cell;
-        // Even the rarest places stay visible.
+        // Even the rarest positions stay visible.
         mesh.add_colored_rect(Rect::from_min_size(corner, cell), color.gamma_multiply(0.15 + 0.7 * density.sqrt()));
     }
     ui.painter().add(mesh);
     for (light, at) in lookups.probe.into_iter().flat_map(|probe| ramp.lookups(probe)) {
-        let place = rect.min + Vec2::new(at.x, 1.0 - at.y) * rect.size();
-        ui.painter().circle(place, 4.0, mark_color(light), Stroke::new(1.5, Color32::BLACK));
+        let position = rect.min + Vec2::new(at.x, 1.0 - at.y) * rect.size();
+        ui.painter().circle(position, 4.0, mark_color(light), Stroke::new(1.5, Color32::BLACK));
     }
-    at.map(|at| RampPlace::TwoAxes(ramp, glam::Vec2::new(at.x, 1.0 - at.y)))
+    at.map(|at| RampPosition::TwoAxes(ramp, glam::Vec2::new(at.x, 1.0 - at.y)))
 }

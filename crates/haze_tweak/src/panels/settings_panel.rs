@@ -40,7 +40,7 @@ pub fn panel(ui: &mut Ui, session: &mut Session) -> Option<String> {
     }
     systems_panel::panel(ui, session);
     ui.separator();
-    session.inspect.ramp_place = None;
+    session.inspect.ramp_position = None;
     session.thumbnails.follow(session.document.path(), session.assets.as_deref());
     if session.view.tab == Tab::Ramps {
         let area = egui::ScrollArea::vertical().id_salt(session.view.tab).auto_shrink(false);
@@ -50,7 +50,7 @@ pub fn panel(ui: &mut Ui, session: &mut Session) -> Option<String> {
             ui.set_max_width(ui.available_width() - ui.spacing().scroll.bar_width);
             ramps_panel::panel(ui, session, system)
         });
-        session.inspect.ramp_place = shown.inner;
+        session.inspect.ramp_position = shown.inner;
         return None;
     }
     if session.view.tab == Tab::Sprite {
@@ -261,8 +261,8 @@ mod tests {
         let is_gray = |name| control(&harness, name).accesskit_node().is_disabled();
         assert!(is_gray("Blend mode") && !is_gray("Technique"));
         // The name is to the left of the control.
-        let place = control(&harness, "Blend mode").rect().left_center();
-        harness.hover_at(place - Vec2::new(80.0, 0.0));
+        let position = control(&harness, "Blend mode").rect().left_center();
+        harness.hover_at(position - Vec2::new(80.0, 0.0));
         harness.run_steps(8);
         assert!(harness.query_all_by_label_contains("No effect now: forward only.").next().is_some());
     }
@@ -272,9 +272,9 @@ mod tests {
         let mut harness = window("column", Vec2::new(1280.0, 800.0), Theme::Dark);
         harness.get_by_label("Advanced").click();
         harness.run_steps(3);
-        let place = |name: &str| harness.get_all_by_label(name).next().unwrap().rect().top();
-        let before = ["Technique", "Boost", "Sprite", "Volumetric"].map(place).into_iter().fold(0.0, f32::max);
-        assert!(["Path", "Blend mode", "Smoke buffer"].into_iter().all(|name| place(name) > before));
+        let position = |name: &str| harness.get_all_by_label(name).next().unwrap().rect().top();
+        let before = ["Technique", "Boost", "Sprite", "Volumetric"].map(position).into_iter().fold(0.0, f32::max);
+        assert!(["Path", "Blend mode", "Smoke buffer"].into_iter().all(|name| position(name) > before));
         for name in super::SMOKE_TAB_GROUPS {
             // The strip below the image has labels of its own.
             let is_row = |node: &Node<'_>| node.rect().left() > 900.0 && node.rect().bottom() < 660.0;
@@ -327,16 +327,16 @@ mod tests {
         for (_, name, _) in super::TABS {
             harness.get_all_by_label(name).next().unwrap().click();
             harness.run_steps(4);
-            let picture = harness.get_by_label("viewport").rect();
+            let image = harness.get_by_label("viewport").rect();
             // The strip takes the full width.
-            let others = [size.x - picture.width(), size.y - picture.bottom()];
-            assert!(picture.width() > others[0] && picture.height() > others[1], "{name}: {picture}");
+            let others = [size.x - image.width(), size.y - image.bottom()];
+            assert!(image.width() > others[0] && image.height() > others[1], "{name}: {image}");
             // Nothing on the tab is wider than the panel.
-            let width = *width.get_or_insert(picture.width());
-            assert!((width - picture.width()).abs() < 0.5, "{name}: {width} {picture}");
+            let width = *width.get_or_insert(image.width());
+            assert!((width - image.width()).abs() < 0.5, "{name}: {width} {image}");
             for (_, name, _) in super::TABS {
                 let tab = harness.get_all_by_label(name).next().unwrap().rect();
-                assert!(tab.left() >= picture.right() && tab.right() <= size.x, "{name}: {tab}, beside {picture}");
+                assert!(tab.left() >= image.right() && tab.right() <= size.x, "{name}: {tab}, beside {image}");
             }
         }
     }

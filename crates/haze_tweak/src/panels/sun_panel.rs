@@ -21,15 +21,15 @@ const NEW_SUN: f32 = 18.0;
 const TOOLTIP: &str = "Moves the sun, and gives sun, sky, ambient light and fill lights the colors and the brightness of that \
      time. All are ordinary settings: change any of them afterwards.";
 
-/// Draws the control, or the button that adds a sun. `place`: center of the smoke.
-pub fn panel(ui: &mut Ui, context: &mut RowContext<'_>, preset: &mut Preset, shown: &mut LightView, place: Vec3) {
+/// Draws the control, or the button that adds a sun. `position`: center of the smoke.
+pub fn panel(ui: &mut Ui, context: &mut RowContext<'_>, preset: &mut Preset, shown: &mut LightView, position: Vec3) {
     let Some(index) = sun_of(&preset.lights) else {
         ui.horizontal_wrapped(|ui| {
             let can_add = preset.lights.len() < MAX_LIGHTS;
             let button = ui.add_enabled(can_add, eframe::egui::Button::new("Add a sun"));
             let about = "Adds a sun as the key light, with a sky to match, and turns on the backlight ramps. Other lights stay.";
             if button.on_hover_text(about).clicked() {
-                add(preset, shown, place);
+                add(preset, shown, position);
             }
             ui.weak("This preset has no sun.");
         });
@@ -76,12 +76,12 @@ pub fn panel(ui: &mut Ui, context: &mut RowContext<'_>, preset: &mut Preset, sho
     if wanted != (body, before) {
         let (body, angles) = wanted;
         let elevation = angles.elevation.min(MAX_ELEVATION);
-        set_time(preset, index, body, Angles { elevation, ..angles }, place);
+        set_time(preset, index, body, Angles { elevation, ..angles }, position);
     }
 }
 
 /// Adds a sun to the right of the camera, and selects it.
-fn add(preset: &mut Preset, shown: &mut LightView, place: Vec3) {
+fn add(preset: &mut Preset, shown: &mut LightView, position: Vec3) {
     let end = preset.lights.len();
     let forward = preset.camera.target - preset.camera.position;
     let direction = forward.with_y(0.0).cross(Vec3::NEG_Y).normalize_or(Vec3::NEG_X);
@@ -101,7 +101,7 @@ fn add(preset: &mut Preset, shown: &mut LightView, place: Vec3) {
     }
     keep_one_key(&mut preset.lights, end);
     let angles = Angles { elevation: NEW_SUN, ..to_angles(direction) };
-    set_time(preset, end, Body::Sun, angles, place);
+    set_time(preset, end, Body::Sun, angles, position);
 }
 
 #[cfg(test)]
@@ -168,8 +168,8 @@ mod tests {
         let rect = slider.unwrap().rect();
         harness.hover_at(rect.center());
         harness.drag_at(rect.center());
-        for share in [0.3, 0.2, 0.15] {
-            harness.hover_at(rect.left_center() + Vec2::new(share * rect.width(), 0.0));
+        for fraction in [0.3, 0.2, 0.15] {
+            harness.hover_at(rect.left_center() + Vec2::new(fraction * rect.width(), 0.0));
             harness.run_steps(2);
         }
         harness.drop_at(rect.left_center() + Vec2::new(0.15 * rect.width(), 0.0));

@@ -21,8 +21,8 @@ enum Edit {
     EndRename(usize, Option<String>),
 }
 
-/// Share of the panel's height that the list takes at most, and rows that it shows at least.
-const MAX_SHARE: f32 = 0.3;
+/// Fraction of the panel's height that the list takes at most, and rows that it shows at least.
+const MAX_FRACTION: f32 = 0.3;
 const MIN_ROWS: f32 = 2.0;
 
 /// Width of the buttons of a letter and of the button that adds a system; gap between them, points.
@@ -52,7 +52,7 @@ pub fn panel(ui: &mut Ui, session: &mut Session) {
             return;
         }
         let row_height = ui.spacing().interact_size.y + GAP;
-        let most = (MAX_SHARE * ui.available_height()).max(MIN_ROWS * row_height);
+        let most = (MAX_FRACTION * ui.available_height()).max(MIN_ROWS * row_height);
         let area = egui::ScrollArea::vertical().id_salt("systems").max_height(most).auto_shrink([false, true]);
         let mut edit = None;
         area.show(ui, |ui| {

@@ -28,13 +28,13 @@ pub struct LoadedAssets {
 
 /// Loads all files that the preset at a path names.
 pub fn all(preset: &Preset, path: &Path, folders: &AssetFolders) -> Result<LoadedAssets, Error> {
-    let materials = pictures(preset, path, folders)?;
+    let materials = images(preset, path, folders)?;
     let particles = particles(preset, path, folders)?;
     Ok(LoadedAssets { materials, particles, backdrop: backdrop(preset, path, folders)? })
 }
 
 /// Loads the images of every system.
-pub fn pictures(preset: &Preset, path: &Path, folders: &AssetFolders) -> Result<Vec<MaterialAssets>, Error> {
+pub fn images(preset: &Preset, path: &Path, folders: &AssetFolders) -> Result<Vec<MaterialAssets>, Error> {
     Ok(preset.load_materials_from(path, folders)?)
 }
 
@@ -61,9 +61,9 @@ pub fn material(names: &MaterialSources, folder: &Path) -> Result<MaterialAssets
 }
 
 /// Returns the path of an image, or the path where it is expected; empty if it is built in.
-pub fn place_of(name: &str, folders: &AssetFolders) -> PathBuf {
-    let place = |file| folders.find(file).ok().or_else(|| folders.candidate_paths(file).next());
-    image_file_path(name).and_then(place).unwrap_or_default()
+pub fn image_path(name: &str, folders: &AssetFolders) -> PathBuf {
+    let find = |file| folders.find(file).ok().or_else(|| folders.candidate_paths(file).next());
+    image_file_path(name).and_then(find).unwrap_or_default()
 }
 
 pub fn ramp(path: &Path) -> Result<Ramp, Error> {

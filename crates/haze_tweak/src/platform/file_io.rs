@@ -27,8 +27,8 @@ pub fn read_text(path: &Path) -> Result<String, Error> {
 }
 
 /// Reads the bytes of an image file.
-pub fn read_picture(path: &Path) -> Result<Vec<u8>, Error> {
-    Ok(bounded_read::read(path, "PNG picture", MAX_BYTES)?)
+pub fn read_image(path: &Path) -> Result<Vec<u8>, Error> {
+    Ok(bounded_read::read(path, "PNG image", MAX_BYTES)?)
 }
 
 /// Reads the bytes of a recipe file.

@@ -26,7 +26,7 @@ pub enum CompareWith {
 #[derive(Clone, Debug, PartialEq)]
 pub struct CompareState {
     pub against: Option<CompareWith>,
-    /// Share of the width at which the second image begins, 0 to 1.
+    /// Fraction of the width at which the second image begins, 0 to 1.
     pub split: f32,
     /// Factor on the difference image, which replaces the two images; 0 shows the two side by side.
     pub difference: f32,
@@ -70,7 +70,7 @@ impl CompareState {
         self.against = (self.against.as_ref() != Some(against)).then(|| against.clone());
     }
 
-    /// Returns the image shown at a share `x` of the width. The difference view counts as the first image.
+    /// Returns the image shown at a fraction `x` of the width. The difference view counts as the first image.
     pub fn side(&self, x: f32) -> ComparedSide {
         let is_second = self.against.is_some() && self.difference == 0.0 && x >= self.split;
         if is_second { ComparedSide::Second } else { ComparedSide::First }

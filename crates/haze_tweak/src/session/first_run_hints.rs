@@ -48,14 +48,14 @@ impl Hint {
 #[derive(Clone, Debug)]
 pub struct FirstRunHints {
     open: Vec<Hint>,
-    places: [Rect; 4],
+    parts: [Rect; 4],
     /// Camera position and systems of the previous frame, to detect changes.
     last: Option<(Vec3, Vec<PresetSystem>)>,
 }
 
 impl Default for FirstRunHints {
     fn default() -> Self {
-        Self { open: Vec::new(), places: [Rect::NOTHING; 4], last: None }
+        Self { open: Vec::new(), parts: [Rect::NOTHING; 4], last: None }
     }
 }
 
@@ -80,12 +80,12 @@ impl FirstRunHints {
 
     /// Returns the current hint and the rectangle that it points at.
     pub fn shown(&self) -> Option<(Hint, Rect)> {
-        self.open.first().map(|hint| (*hint, self.places[hint.window_part() as usize]))
+        self.open.first().map(|hint| (*hint, self.parts[hint.window_part() as usize]))
     }
 
     /// Records the rectangle of a part of the window.
-    pub fn record_rect(&mut self, place: WindowPart, rect: Rect) {
-        self.places[place as usize] = rect;
+    pub fn record_rect(&mut self, part: WindowPart, rect: Rect) {
+        self.parts[part as usize] = rect;
     }
 
     /// Dismisses the current hint. Returns false if none was shown.

@@ -7,7 +7,7 @@ use glam::{UVec2, Vec3};
 use haze_core::formula::tonemap::DisplayTransform;
 use haze_reference::Probe;
 
-use super::ramp_survey::{RampPlace, RampSurvey};
+use super::ramp_survey::{RampPosition, RampSurvey};
 use crate::viewport_renderer::compared_side::ComparedSide;
 
 /// State of the inspector.
@@ -17,7 +17,7 @@ pub struct Inspection {
     pub is_on: bool,
     /// A drag paints on the smoke, and the values would hide it.
     pub is_painting: bool,
-    /// Pointer position over the image, in shares of its sides.
+    /// Pointer position over the image, in fractions of its sides.
     pub pointer: Option<Vec2>,
     /// Pinned position.
     pub pinned: Option<Vec2>,
@@ -26,7 +26,7 @@ pub struct Inspection {
     /// Ramp coordinates of the whole image.
     pub survey: Option<Arc<RampSurvey>>,
     /// Place on a ramp. Smoke that samples it is highlighted in the image.
-    pub ramp_place: Option<RampPlace>,
+    pub ramp_position: Option<RampPosition>,
 }
 
 /// Values of a pixel.
@@ -36,8 +36,8 @@ pub struct PixelValues {
     pub side: ComparedSide,
     pub names: Vec<String>,
     pub probe: Probe,
-    /// Share of the pixel that an object in front covers at its outline, 0 to 1. The probe is of the rest.
-    pub front_share: f32,
+    /// Fraction of the pixel that an object in front covers at its outline, 0 to 1. The probe is of the rest.
+    pub front_fraction: f32,
     /// From its light to the color on the screen.
     pub transform: DisplayTransform,
 }
@@ -52,7 +52,7 @@ impl Inspection {
     }
 
     /// Returns the position to inspect.
-    pub fn place(&self) -> Option<Vec2> {
+    pub fn position(&self) -> Option<Vec2> {
         self.pinned.filter(|_| self.is_on).or(self.pointer)
     }
 

@@ -93,17 +93,17 @@ impl LightView {
     }
 
     /// Gives all stored indices their new values; `None` removes an index.
-    fn renumber(&mut self, place: impl Fn(usize) -> Option<usize>) {
-        self.selected = self.selected.and_then(&place);
-        self.held_key = self.held_key.and_then(|(system, index)| Some((system, place(index)?)));
+    fn renumber(&mut self, position: impl Fn(usize) -> Option<usize>) {
+        self.selected = self.selected.and_then(&position);
+        self.held_key = self.held_key.and_then(|(system, index)| Some((system, position(index)?)));
     }
 
     /// Returns the preset's key light, or else the light in the image that is brightest at the emitter of a system.
     pub fn key_light(&self, preset: &Preset, system: usize) -> Option<usize> {
         let brightest = || {
-            let place = preset.systems.get(system)?.emitter.position;
+            let position = preset.systems.get(system)?.emitter.position;
             let shown = (0..).zip(&preset.lights).filter(|(index, _)| self.is_shown(*index));
-            let brightness = |light: &Light| light_roles::brightness_at(light, place);
+            let brightness = |light: &Light| light_roles::brightness_at(light, position);
             shown.max_by(|a, b| brightness(a.1).total_cmp(&brightness(b.1))).map(|(index, _)| index)
         };
         light_roles::key_light(&preset.lights).or_else(brightest)
@@ -175,9 +175,9 @@ impl LightView {
         if preset.lights.len() < MAX_LIGHTS {
             self.follow(&preset.lights);
             preset.lights.insert(index, light);
-            let place = |place| Some(place + usize::from(place >= index));
-            self.renumber(place);
-            renumber_lights(&mut preset.animation, place);
+            let position = |position| Some(position + usize::from(position >= index));
+            self.renumber(position);
+            renumber_lights(&mut preset.animation, position);
             self.entries.insert(index, LightEntry { light, mute_solo: MuteSolo::default() });
             self.selected = Some(index);
         }
@@ -208,9 +208,9 @@ impl LightView {
                 preset.environment.lamp = false;
             }
             self.entries.remove(index);
-            let place = |place| (place != index).then(|| place - usize::from(place > index));
-            self.renumber(place);
-            renumber_lights(&mut preset.animation, place);
+            let position = |position| (position != index).then(|| position - usize::from(position > index));
+            self.renumber(position);
+            renumber_lights(&mut preset.animation, position);
         }
     }
 }

@@ -43,7 +43,7 @@ pub struct ShownLooks {
 pub struct LookEntry {
     pub name: String,
     /// `None` until it is rendered.
-    pub picture: Option<TextureHandle>,
+    pub image: Option<TextureHandle>,
 }
 
 /// Returns the size of a thumbnail of a view, pixels: its shape, but at most as high as wide.
@@ -56,7 +56,7 @@ impl LookThumbnails {
     /// Shows the ramps of these names in a field.
     pub fn open(&mut self, system: usize, field: &'static str, names: Vec<String>) {
         self.close();
-        let entries = names.into_iter().map(|name| LookEntry { name, picture: None }).collect();
+        let entries = names.into_iter().map(|name| LookEntry { name, image: None }).collect();
         self.shown = Some(ShownLooks { system, field, entries, rendered: None, wanted: None, tickets: Vec::new() });
     }
 
@@ -74,11 +74,11 @@ impl LookThumbnails {
     /// Takes finished thumbnails, and requests new ones as soon as the smoke stands still. `shot`: the present view.
     pub fn advance(&mut self, context: &egui::Context, shot: &Shot, folders: &AssetFolders) {
         let Some(shown) = &mut self.shown else { return };
-        while let Some(Some((name, picture))) = self.worker.as_ref().and_then(Worker::poll) {
-            if let Some((entry, picture)) = shown.entries.iter_mut().find(|entry| entry.name == name).zip(picture) {
-                let size = [picture.width() as usize, picture.height() as usize];
-                let picture = ColorImage::from_rgb(size, &picture);
-                entry.picture = Some(context.load_texture(name, picture, TextureOptions::LINEAR));
+        while let Some(Some((name, image))) = self.worker.as_ref().and_then(Worker::poll) {
+            if let Some((entry, image)) = shown.entries.iter_mut().find(|entry| entry.name == name).zip(image) {
+                let size = [image.width() as usize, image.height() as usize];
+                let image = ColorImage::from_rgb(size, &image);
+                entry.image = Some(context.load_texture(name, image, TextureOptions::LINEAR));
             }
         }
         let shot = Shot { size: thumbnail_size(shot.size), ..shot.clone() };
@@ -116,8 +116,8 @@ impl LookThumbnails {
                 let shot = shot.clone();
                 let folders = folders.clone();
                 shown.tickets.push(worker.submit_async(async move |_| {
-                    let picture = draw(&shot, system, field, &name, &folders).await;
-                    (name, picture.ok())
+                    let image = draw(&shot, system, field, &name, &folders).await;
+                    (name, image.ok())
                 }));
             }
         }
@@ -130,7 +130,7 @@ impl LookThumbnails {
 fn ramp(name: &str, folders: &AssetFolders) -> Result<Ramp, Error> {
     match builtin::find(builtin::RAMPS, name) {
         Some(builtin) => Ok(builtin.ramp()?),
-        None => asset_loading::ramp(&asset_loading::place_of(name, folders)),
+        None => asset_loading::ramp(&asset_loading::image_path(name, folders)),
     }
 }
 
@@ -158,6 +158,6 @@ fn with_ramp(shot: &Shot, system: usize, field: &str, name: &str, ramp: Ramp) ->
 
 async fn draw(shot: &Shot, system: usize, field: &str, name: &str, folders: &AssetFolders) -> Result<RgbImage, Error> {
     let shot = with_ramp(shot, system, field, name, ramp(name, folders)?);
-    let picture = render_job::open_thumbnail_backend()?.render_async(&shot).await?;
-    Ok(tonemap(&picture, &shot))
+    let image = render_job::open_thumbnail_backend()?.render_async(&shot).await?;
+    Ok(tonemap(&image, &shot))
 }

@@ -72,7 +72,7 @@ fn thickness(system: &PresetSystem) -> f32 {
 
 /// Sets the product. Amount and boost change by the same factor within their ranges; opacity takes the rest.
 fn set_thickness(system: &mut PresetSystem, thickness: f32) {
-    // Field, its upper limit, and the exponent of its share in the remaining factor.
+    // Field, its upper limit, and the exponent of its fraction in the remaining factor.
     let mut of = [
         (&mut system.emitter.amount, 1.0, 0.5),
         (&mut system.settings.boost, 16.0, 1.0),
@@ -82,8 +82,8 @@ fn set_thickness(system: &mut PresetSystem, thickness: f32) {
     of.iter_mut().for_each(|(value, ..)| **value = value.max(1.0e-3));
     for at in 0..of.len() {
         let product: f32 = of.iter().map(|(value, ..)| **value).product();
-        let (value, most, share) = &mut of[at];
-        **value = (**value * (thickness / product).powf(*share)).clamp(1.0e-3, *most);
+        let (value, most, fraction) = &mut of[at];
+        **value = (**value * (thickness / product).powf(*fraction)).clamp(1.0e-3, *most);
     }
 }
 

@@ -3,13 +3,13 @@
 pub mod action;
 pub mod comparison;
 pub mod first_run_hints;
+pub mod image_thumbnails;
 pub mod inspection;
 pub mod light_view;
 pub mod look_controls;
 pub mod look_thumbnails;
 pub mod macro_param;
 pub mod messages;
-pub mod picture_thumbnails;
 pub mod playback;
 pub mod ramp_survey;
 pub mod setting_search;
@@ -53,11 +53,11 @@ use crate::viewport_renderer::frame_timings::FrameTimings;
 use crate::viewport_renderer::psnr_job::PsnrJob;
 use comparison::CompareState;
 use first_run_hints::FirstRunHints;
+use image_thumbnails::ImageThumbnails;
 use inspection::Inspection;
 use light_view::LightView;
 use look_thumbnails::LookThumbnails;
 use messages::Messages;
-use picture_thumbnails::PictureThumbnails;
 use playback::Playback;
 use setting_search::SettingSearch;
 use smoke_geometry::SmokeGeometry;
@@ -81,7 +81,7 @@ pub struct Session {
     pub tooltips: Tooltips,
     /// Descriptions of the debug views.
     pub debug_view_tooltips: Tooltips,
-    pub thumbnails: PictureThumbnails,
+    pub thumbnails: ImageThumbnails,
     /// Looks of a ramp, while they are shown.
     pub looks: LookThumbnails,
     /// Flipbook on the Sprite tab.
@@ -176,7 +176,7 @@ impl Session {
             timings: FrameTimings::default(),
             tooltips: Tooltips::of::<Preset>(),
             debug_view_tooltips: Tooltips::of::<DebugView>(),
-            thumbnails: PictureThumbnails::default(),
+            thumbnails: ImageThumbnails::default(),
             looks: LookThumbnails::default(),
             flipbook: None,
             repaint: RepaintHandle::default(),
@@ -201,7 +201,7 @@ impl Session {
     /// Attaches the session to another window. GPU resources of the previous device are dropped.
     pub fn attach_window(&mut self, context: &egui::Context) {
         self.repaint.follow(context);
-        self.thumbnails = PictureThumbnails::default();
+        self.thumbnails = ImageThumbnails::default();
         self.flipbook = None;
         self.looks = LookThumbnails::default();
     }
@@ -482,7 +482,7 @@ impl Session {
         self.copy_request = None;
         self.looks.close();
         self.sprites.forget();
-        let stale = ["preset", "ramp", "sprite", "pictures", "caches", "backdrop", "file"];
+        let stale = ["preset", "ramp", "sprite", "images", "caches", "backdrop", "file"];
         stale.into_iter().for_each(|about| self.messages.clear(about));
         self.document = document;
     }

@@ -14,12 +14,12 @@ const MAX_SAMPLED_PIXELS: u32 = 10_000;
 pub const BINS: usize = 64;
 pub const SIDE: usize = 32;
 
-/// Distance within which a sample counts as at a place on a ramp.
+/// Distance within which a sample counts as at a position on a ramp.
 pub const NEAR: f32 = 0.02;
 
 /// Place on a ramp of a system.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum RampPlace {
+pub enum RampPosition {
     /// Coordinate from the cosine N·L between normal and light.
     Diffuse(f32),
     /// Accumulated amount.
@@ -30,8 +30,8 @@ pub enum RampPlace {
     TwoAxes(TwoAxisRamp, Vec2),
 }
 
-impl RampPlace {
-    /// Returns true if both are on the same ramp, and nearly at the same place.
+impl RampPosition {
+    /// Returns true if both are on the same ramp, and nearly at the same position.
     pub fn is_near(self, other: Self) -> bool {
         match (self, other) {
             (Self::Diffuse(a), Self::Diffuse(b))
@@ -175,13 +175,13 @@ impl RampSurvey {
         bins
     }
 
-    /// Returns the sampled pixels whose smoke samples a place on a ramp.
-    pub fn at(&self, system: usize, ramp_place: RampPlace) -> Vec<UVec2> {
-        let looks_up = |probe: &SystemProbe| match ramp_place {
-            RampPlace::Diffuse(x) => probe.lights.iter().any(|light| is_near(light.coordinate, x)),
-            RampPlace::SoftScatter(x) => is_near(probe.amount, x),
-            RampPlace::Coverage(x) => is_near(probe.coverage_coordinate, x),
-            RampPlace::TwoAxes(ramp, place) => ramp.lookups(probe).any(|(_, at)| is_near_2d(at, place)),
+    /// Returns the sampled pixels whose smoke samples a position on a ramp.
+    pub fn at(&self, system: usize, ramp_position: RampPosition) -> Vec<UVec2> {
+        let looks_up = |probe: &SystemProbe| match ramp_position {
+            RampPosition::Diffuse(x) => probe.lights.iter().any(|light| is_near(light.coordinate, x)),
+            RampPosition::SoftScatter(x) => is_near(probe.amount, x),
+            RampPosition::Coverage(x) => is_near(probe.coverage_coordinate, x),
+            RampPosition::TwoAxes(ramp, position) => ramp.lookups(probe).any(|(_, at)| is_near_2d(at, position)),
         };
         self.probes_of_system(system).filter(|(_, probe)| looks_up(probe)).map(|(pixel, _)| *pixel).collect()
     }
@@ -235,7 +235,7 @@ mod tests {
             diffuse: Vec3::ZERO,
             soft_scatter_weight: None,
             soft_scatter: Vec3::ZERO,
-            fire: fire.map(|coordinate| FireProbe { coordinate, share: 1.0, light: Vec3::ZERO }),
+            fire: fire.map(|coordinate| FireProbe { coordinate, fraction: 1.0, light: Vec3::ZERO }),
             blended: Vec4::ZERO,
         }
     }
@@ -284,7 +284,7 @@ mod tests {
     #[test]
     fn smoke_is_found_by_its_place_on_a_ramp_with_two_axes() {
         let found = |ramp, x, y| {
-            let pixels = survey().at(0, RampPlace::TwoAxes(ramp, Vec2::new(x, y)));
+            let pixels = survey().at(0, RampPosition::TwoAxes(ramp, Vec2::new(x, y)));
             pixels.into_iter().map(|pixel| pixel.x).collect::<Vec<_>>()
         };
         assert_eq!(found(TwoAxisRamp::Shadow, 0.11, 0.29), [1, 2]);

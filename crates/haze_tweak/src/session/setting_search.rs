@@ -52,7 +52,7 @@ impl SettingSearch {
 /// Result of a search.
 pub struct SearchResult {
     pub path: String,
-    /// Name with its place: "Soft fade: Fade scale".
+    /// Name with its location: "Soft fade: Fade scale".
     pub name: String,
     pub tooltip: String,
     /// Tab that shows it.
@@ -117,8 +117,8 @@ impl Query {
     }
 
     /// Returns the rank of a setting, the best first; `None` if it does not match.
-    fn rank(&self, name: &str, place: &str, path: &str, tooltip: &str) -> Option<u32> {
-        let whole = format!("{place} {name} {path}");
+    fn rank(&self, name: &str, position: &str, path: &str, tooltip: &str) -> Option<u32> {
+        let whole = format!("{position} {name} {path}");
         match () {
             () if name.to_lowercase().starts_with(&self.text) => Some(0),
             () if self.is_in(name, false) => Some(1),
@@ -133,7 +133,7 @@ impl Query {
 /// Rank of a setting that only its description matches. Such results are shown if there are no others.
 const IN_TOOLTIP: u32 = 4;
 
-/// Returns settings whose names contain the words of a text, those that begin with it first; then those in a place of
+/// Returns settings whose names contain the words of a text, those that begin with it first; then those in a location of
 /// such a name, those with a similar word, or else those whose descriptions contain them. Controls of the look tab are
 /// also found by their names there; `lights` tells which light is the key light.
 pub fn matches(preset: &Preset, tooltips: &Tooltips, lights: &LightView, text: &str) -> Vec<SearchResult> {
@@ -150,9 +150,9 @@ pub fn matches(preset: &Preset, tooltips: &Tooltips, lights: &LightView, text: &
             };
             // A control that is named like its field is found below.
             if is_made || !path.ends_with(&format!(".{}", control.name.replace(' ', "_"))) {
-                let place = if has_many { format!("Look of {}", system.name) } else { "Look".into() };
-                if let Some(rank) = query.rank(control.name, &place, "", "") {
-                    let name = format!("{place}: {}", display_name(control.name));
+                let position = if has_many { format!("Look of {}", system.name) } else { "Look".into() };
+                if let Some(rank) = query.rank(control.name, &position, "", "") {
+                    let name = format!("{position}: {}", display_name(control.name));
                     found.push((rank, SearchResult { path, name, tooltip: tooltip.into(), tab: Tab::Look }));
                 }
             }
@@ -163,10 +163,10 @@ pub fn matches(preset: &Preset, tooltips: &Tooltips, lights: &LightView, text: &
         // The preset's own name and description are on no tab.
         let Some((name, groups)) = steps.split_last().filter(|(_, groups)| !groups.is_empty()) else { return };
         let own = display_name(name.0);
-        let place = place_of(preset, groups);
+        let position = location_of(preset, groups);
         let tooltip = tooltips.field(&plain(&path)).unwrap_or_default();
-        if let Some(rank) = query.rank(&own, &place, &path, tooltip) {
-            let name = format!("{place}: {own}");
+        if let Some(rank) = query.rank(&own, &position, &path, tooltip) {
+            let name = format!("{position}: {own}");
             let tab = tab_of(&path);
             found.push((rank, SearchResult { path, name, tooltip: tooltip.into(), tab }));
         }
@@ -185,8 +185,8 @@ fn plain(path: &str) -> String {
     parts.collect::<Vec<_>>().join(".")
 }
 
-/// Returns the place of a field in words: the name of its light, or its system, if there are several, and its groups.
-fn place_of(preset: &Preset, groups: &[(&'static str, Option<usize>)]) -> String {
+/// Returns the location of a field in words: the name of its light, or its system, if there are several, and its groups.
+fn location_of(preset: &Preset, groups: &[(&'static str, Option<usize>)]) -> String {
     let mut names = Vec::new();
     for (list, index) in groups {
         match (*list, *index) {

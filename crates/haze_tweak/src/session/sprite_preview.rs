@@ -63,13 +63,13 @@ const BEHIND: Vec3 = Vec3::splat(0.03);
 
 /// Draws the preview.
 pub fn draw(material: &MaterialAssets, view: &View) -> ColorImage {
-    let mut picture = Image::new(UVec2::splat(view.side), Color32::BLACK);
-    picture.for_each(|at, pixel| {
+    let mut image = Image::new(UVec2::splat(view.side), Color32::BLACK);
+    image.for_each(|at, pixel| {
         let uv = (at.as_vec2() + 0.5) / view.side as f32;
         let [r, g, b] = code(material, view, uv).to_array().map(|code| (code * 255.0).round() as u8);
         *pixel = Color32::from_rgb(r, g, b);
     });
-    ColorImage::new([view.side as usize; 2], picture.texels)
+    ColorImage::new([view.side as usize; 2], image.texels)
 }
 
 /// Returns the sRGB value, 0 to 1, of a position on the sprite.
@@ -113,10 +113,10 @@ mod tests {
     }
 
     /// Returns the mean brightness of the left, right, upper and lower half.
-    fn halves(picture: &ColorImage) -> [f32; 4] {
+    fn halves(image: &ColorImage) -> [f32; 4] {
         let mean = |is_in: &dyn Fn(usize, usize) -> bool| {
             let at = |index: usize| (index % 64, index / 64);
-            let of = picture.pixels.iter().enumerate().filter(|(index, _)| is_in(at(*index).0, at(*index).1));
+            let of = image.pixels.iter().enumerate().filter(|(index, _)| is_in(at(*index).0, at(*index).1));
             of.map(|(_, pixel)| f32::from(pixel.g())).sum::<f32>() / 2048.0
         };
         [mean(&|x, _| x < 32), mean(&|x, _| x >= 32), mean(&|_, y| y < 32), mean(&|_, y| y >= 32)]

@@ -41,8 +41,8 @@ impl SystemView {
         self.renaming = None;
         // Systems that another preset has in their places are other systems.
         let is_same_list = seen.len() != now.len() || seen.iter().all(|key| now.contains(key));
-        let place = seen.get(selected).and_then(|key| now.iter().position(|other| other == key));
-        place.filter(|_| is_same_list).unwrap_or(selected).min(most)
+        let position = seen.get(selected).and_then(|key| now.iter().position(|other| other == key));
+        position.filter(|_| is_same_list).unwrap_or(selected).min(most)
     }
 
     /// Returns the flags of a system, for changing them.

@@ -66,7 +66,7 @@ impl Default for ViewOptions {
 pub enum Overlay {
     /// Bounding box of each system.
     Bounds,
-    /// Plane that is lit in place of the volume (flattened shading).
+    /// Plane that is lit instead of the volume (flattened shading).
     LitPlane,
     Particles,
     /// Texels of the accumulation target.

@@ -58,8 +58,8 @@ impl CameraInput {
         }
         self.fly(ui, response, camera);
         let is_faster = self.wheel(ui, response, projection, camera);
-        let places = [camera.position, camera.target];
-        if !places.iter().all(|place| place.is_finite() && place.abs().max_element() <= MAX_COORDINATE) {
+        let positions = [camera.position, camera.target];
+        if !positions.iter().all(|position| position.is_finite() && position.abs().max_element() <= MAX_COORDINATE) {
             *camera = before;
         }
         is_faster

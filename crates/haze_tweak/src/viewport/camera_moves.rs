@@ -28,15 +28,15 @@ fn turned(v: Vec3, angle: Vec2) -> Vec3 {
     if steepness(steep) < steepness(level).max(MAX_ABS_Y) { steep } else { level }
 }
 
-/// Moves camera and target by shares of the image height, so that the target stays under the pointer.
-pub fn pan(camera: &mut Camera, share: Vec2) {
+/// Moves camera and target by fractions of the image height, so that the target stays under the pointer.
+pub fn pan(camera: &mut Camera, fraction: Vec2) {
     let away = camera.target - camera.position;
     let (right, up) = sides(away.normalize_or(Vec3::NEG_Z));
     let reach = 2.0 * away.length() * (0.5 * camera.fov.to_radians()).tan();
-    shift(camera, (up * share.y - right * share.x) * reach);
+    shift(camera, (up * fraction.y - right * fraction.x) * reach);
 }
 
-/// Scales the distances of camera and target to a point by a factor. The point stays at its place in the image.
+/// Scales the distances of camera and target to a point by a factor. The point stays at its position in the image.
 pub fn dolly(camera: &mut Camera, point: Vec3, factor: f32) {
     let distance = camera.position.distance(camera.target).max(1.0e-6);
     let factor = factor.clamp(MIN_DISTANCE / distance, (0.5 * camera.far).max(MIN_DISTANCE) / distance);

@@ -72,7 +72,7 @@ fn entries(
 }
 
 /// Returns a light under the pointer, on the plane through the smoke's center that faces the camera. A sun shines from
-/// that place on the sun sphere.
+/// that position on the sun sphere.
 fn here(mut light: Light, at: Pos2, projection: &ScreenProjection, middle: Vec3) -> Light {
     let (center, radius) = projection.sun_sphere;
     light.position = projection.unproject_to_facing_plane(at, middle);

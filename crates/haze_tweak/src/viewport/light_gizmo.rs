@@ -201,7 +201,7 @@ fn hue_of(light: &Light) -> Color32 {
     light_marker::full_brightness(light.color)
 }
 
-/// Draws a sun: a line from its place on the sun sphere to the camera's target.
+/// Draws a sun: a line from its position on the sun sphere to the camera's target.
 fn draw_sun(outlined: &OutlinedPainter<'_>, light: &Light, projection: &ScreenProjection) {
     let (center, radius) = projection.sun_sphere;
     circle(

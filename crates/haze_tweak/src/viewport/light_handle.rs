@@ -78,7 +78,8 @@ pub fn handles(light: &Light, projection: &ScreenProjection) -> Vec<(Handle, Sha
     }
     if light.kind == LightKind::Spot {
         let cone = Cone::new(light, projection);
-        let mut knob = |handle, place: Vec3| all.extend(projection.project(place).map(|at| (handle, Shape::Knob(at))));
+        let mut knob =
+            |handle, position: Vec3| all.extend(projection.project(position).map(|at| (handle, Shape::Knob(at))));
         knob(Handle::OuterAngle, cone.rim(light.outer_angle, cone.side));
         knob(Handle::InnerAngle, cone.rim(light.inner_angle, -cone.side));
         knob(Handle::Aim, cone.rim(0.0, cone.side));
@@ -102,8 +103,8 @@ impl Shape {
         match *self {
             Self::Arrow([from, to]) => {
                 let along = to - from;
-                let share = ((at - from).dot(along) / along.length_sq().max(1.0e-6)).clamp(0.0, 1.1);
-                (from + along * share).distance(at) <= GRAB
+                let fraction = ((at - from).dot(along) / along.length_sq().max(1.0e-6)).clamp(0.0, 1.1);
+                (from + along * fraction).distance(at) <= GRAB
             }
             Self::Quad(corners) => {
                 let turn = |i: usize| {

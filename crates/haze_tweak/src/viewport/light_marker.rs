@@ -10,7 +10,7 @@ use super::screen_projection::ScreenProjection;
 /// Largest distance from a mark at which the pointer picks it, points.
 const PICK: f32 = 10.0;
 
-/// Returns the place where a light is shown. A sun has no position, so it is shown on the sphere around the camera's
+/// Returns the position where a light is shown. A sun has no position, so it is shown on the sphere around the camera's
 /// target.
 pub fn light_position(light: &Light, projection: &ScreenProjection) -> Vec3 {
     if light.kind != LightKind::Directional {

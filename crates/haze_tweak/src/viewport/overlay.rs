@@ -109,19 +109,19 @@ fn age(age: f32) -> Color32 {
 
 /// Draws the texels of a target. If they are too small, only every n-th line is drawn.
 fn grid(painter: &Painter, rect: Rect, texels: &TargetTexels, color: Color32) {
-    let pixel = rect.width() / texels.picture.x.max(1) as f32;
+    let pixel = rect.width() / texels.image.x.max(1) as f32;
     let texel = pixel * texels.scale as f32;
     let every = (MIN_GRID_SPACING / texel).ceil().max(1.0) as u32;
-    let place = |x: i32, y: i32| pos2(rect.left() + x as f32 * texel, rect.top() + y as f32 * texel);
+    let position = |x: i32, y: i32| pos2(rect.left() + x as f32 * texel, rect.top() + y as f32 * texel);
     let start = texels.origin;
     let end = texels.origin + texels.size.as_ivec2();
-    let shown = Rect::from_two_pos(place(start.x, start.y), place(end.x, end.y));
+    let shown = Rect::from_two_pos(position(start.x, start.y), position(end.x, end.y));
     let line = Stroke::new(1.0, color.gamma_multiply(0.3));
     for column in (0..=texels.size.x).step_by(every as usize) {
-        painter.vline(place(start.x + column as i32, 0).x, shown.y_range(), line);
+        painter.vline(position(start.x + column as i32, 0).x, shown.y_range(), line);
     }
     for row in (0..=texels.size.y).step_by(every as usize) {
-        painter.hline(shown.x_range(), place(0, start.y + row as i32).y, line);
+        painter.hline(shown.x_range(), position(0, start.y + row as i32).y, line);
     }
     painter.rect_stroke(shown, 0.0, Stroke::new(1.0, color), eframe::egui::StrokeKind::Middle);
     let UVec2 { x, y } = texels.size;
@@ -141,9 +141,9 @@ fn label(painter: &Painter, rect: Rect, at: Pos2, text: &str) {
     let text = painter.layout_no_wrap(text.to_owned(), FontId::proportional(12.0), Color32::WHITE);
     let room = rect.shrink(4.0);
     let most = (room.max - text.size()).max(room.min);
-    let place = Align2::LEFT_TOP.anchor_size(at.clamp(room.min, most), text.size());
-    painter.rect_filled(place.expand(2.0), 2.0, Color32::from_black_alpha(170));
-    painter.galley(place.min, text, Color32::WHITE);
+    let plate = Align2::LEFT_TOP.anchor_size(at.clamp(room.min, most), text.size());
+    painter.rect_filled(plate.expand(2.0), 2.0, Color32::from_black_alpha(170));
+    painter.galley(plate.min, text, Color32::WHITE);
 }
 
 #[cfg(test)]

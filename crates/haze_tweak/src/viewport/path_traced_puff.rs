@@ -109,8 +109,9 @@ impl PathTracedPuff {
                     ui.label("Puff of");
                     let list = egui::ComboBox::from_id_salt("medium").selected_text(MEDIA[self.medium].name);
                     list.show_ui(ui, |ui| {
-                        for (place, medium) in MEDIA.iter().enumerate() {
-                            ui.selectable_value(&mut self.medium, place, medium.name).on_hover_text(medium.description);
+                        for (position, medium) in MEDIA.iter().enumerate() {
+                            ui.selectable_value(&mut self.medium, position, medium.name)
+                                .on_hover_text(medium.description);
                         }
                     });
                 });
@@ -196,8 +197,8 @@ impl TracedPuff {
             *pair[(y / side) as usize].get_pixel(x % side, y % side)
         });
         let size = [sheet.width() as usize, sheet.height() as usize];
-        let picture = ColorImage::from_rgb(size, sheet.as_raw());
-        (context.load_texture("puffs", picture, TextureOptions::LINEAR), response)
+        let image = ColorImage::from_rgb(size, sheet.as_raw());
+        (context.load_texture("puffs", image, TextureOptions::LINEAR), response)
     }
 }
 
@@ -205,9 +206,9 @@ impl Compared {
     /// Draws both puffs under a light at an angle, blended from the two nearest lights.
     fn show(&self, ui: &mut Ui, angle: f32) {
         let count = LIGHTS as usize;
-        let place = angle / 360.0 * LIGHTS as f32;
-        let first = place as usize % count;
-        let share = place.fract();
+        let position = angle / 360.0 * LIGHTS as f32;
+        let first = position as usize % count;
+        let fraction = position.fract();
         let second = (first + 1) % count;
         ui.horizontal(|ui| {
             for (row, name) in
@@ -215,7 +216,7 @@ impl Compared {
             {
                 ui.vertical(|ui| {
                     let (rect, _) = ui.allocate_exact_size(vec2(SIDE, SIDE), egui::Sense::hover());
-                    for (light, opacity) in [(first, 1.0), (second, share)] {
+                    for (light, opacity) in [(first, 1.0), (second, fraction)] {
                         let tint = Color32::WHITE.gamma_multiply(opacity);
                         ui.painter().image(self.sheet.id(), rect, part(light, row), tint);
                     }
@@ -225,7 +226,7 @@ impl Compared {
         });
         let lights = &self.response.lights;
         let mix = |of: fn(&haze_author::ramp::response::LightResponse) -> f32| {
-            of(&lights[first]) * (1.0 - share) + of(&lights[second]) * share
+            of(&lights[first]) * (1.0 - fraction) + of(&lights[second]) * fraction
         };
         let now = mix(|light| light.shown) / mix(|light| light.truth).max(f32::MIN_POSITIVE) - 1.0;
         ui.label(format!("Light at {angle:>3.0}°: {:+.0} %", 100.0 * now));

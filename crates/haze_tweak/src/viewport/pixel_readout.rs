@@ -24,15 +24,15 @@ const WIDE: [f32; 2] = [540.0, 720.0];
 pub fn panel(ui: &Ui, viewport: Rect, session: &Session) {
     let inspect = &session.inspect;
     let compare = &session.compare;
-    let Some(place) = inspect.place().filter(|_| inspect.is_on && !inspect.is_painting) else { return };
-    let side = compare.side(place.x);
+    let Some(position) = inspect.position().filter(|_| inspect.is_on && !inspect.is_painting) else { return };
+    let side = compare.side(position.x);
     let is_made = side == ComparedSide::Second && compare.against == Some(CompareWith::Reference);
     let values = inspect.pixel_values.as_ref().filter(|values| values.side == side && !is_made);
     if values.is_none() && !is_made {
         return;
     }
-    cross(ui, viewport.min + place * viewport.size(), inspect.pinned.is_some());
-    let (corner, pivot) = if place.x < 0.5 {
+    cross(ui, viewport.min + position * viewport.size(), inspect.pinned.is_some());
+    let (corner, pivot) = if position.x < 0.5 {
         (viewport.right_top() + Vec2::new(-MARGIN, MARGIN), egui::Align2::RIGHT_TOP)
     } else {
         (viewport.left_top() + Vec2::splat(MARGIN), egui::Align2::LEFT_TOP)
@@ -70,7 +70,7 @@ fn cross(ui: &Ui, at: egui::Pos2, is_pinned: bool) {
 }
 
 fn numbers(ui: &mut Ui, values: &PixelValues, session: &Session, size: Vec2) {
-    let PixelValues { pixel, side, names, probe, front_share, transform } = values;
+    let PixelValues { pixel, side, names, probe, front_fraction, transform } = values;
     let keep = if session.inspect.pinned.is_some() { "Pinned" } else { "Click to pin" };
     ui.horizontal(|ui| {
         ui.strong(format!("Pixel {}, {}", pixel.x, pixel.y));
@@ -93,13 +93,13 @@ fn numbers(ui: &mut Ui, values: &PixelValues, session: &Session, size: Vec2) {
     }
     ui.separator();
     match probe.color {
-        Some(_) if *front_share > 0.0 => {
-            let covered = 100.0 * front_share;
+        Some(_) if *front_fraction > 0.0 => {
+            let covered = 100.0 * front_fraction;
             ui.weak(format!(
                 "The edge of an object in front covers {covered:.0} %\nof this pixel: values of what is behind it"
             ));
         }
-        Some(color) => picture(ui, color, *transform),
+        Some(color) => image(ui, color, *transform),
         None => {
             ui.weak("The forward path lights each sprite\nseparately: no values to inspect");
         }
@@ -119,7 +119,7 @@ fn system_values(ui: &mut Ui, probe: &SystemProbe, lights: &[String], size: Vec2
     let is_small = is_small(size);
     let columns = LightColumns {
         has_shadow,
-        has_place: !is_small,
+        has_position: !is_small,
         has_numbers: !is_small && size.x >= WIDE[usize::from(has_shadow)],
     };
     egui::Grid::new(("lights", probe.system)).num_columns(7).spacing(gaps(ui)).show(ui, |ui| {
@@ -157,7 +157,7 @@ fn system_values(ui: &mut Ui, probe: &SystemProbe, lights: &[String], size: Vec2
 struct LightColumns {
     has_shadow: bool,
     /// Place on the shadow ramp.
-    has_place: bool,
+    has_position: bool,
     /// Colors as numbers. Their sums are shown as numbers in any case.
     has_numbers: bool,
 }
@@ -169,7 +169,7 @@ fn light_row(ui: &mut Ui, light: &LightProbe, names: &[String], columns: LightCo
     ui.label(format!("{:.2}", light.coordinate));
     ui.label(format!("{:.3}", light.attenuation));
     match light.shadow {
-        Some(shadow) => shadow_values(ui, &shadow, columns.has_place),
+        Some(shadow) => shadow_values(ui, &shadow, columns.has_position),
         None if columns.has_shadow => drop(ui.weak("None")),
         None => {}
     }
@@ -183,11 +183,11 @@ fn light_row(ui: &mut Ui, light: &LightProbe, names: &[String], columns: LightCo
     ui.end_row();
 }
 
-/// Shows the share of a light that is left, and its place on the shadow ramp.
-fn shadow_values(ui: &mut Ui, shadow: &ShadowProbe, has_place: bool) {
+/// Shows the fraction of a light that is left, and its position on the shadow ramp.
+fn shadow_values(ui: &mut Ui, shadow: &ShadowProbe, has_position: bool) {
     ui.horizontal(|ui| {
         ui.label(format!("{:.0} % left", 100.0 * luminance(shadow.transmittance)));
-        if has_place {
+        if has_position {
             let glam::Vec2 { x, y } = shadow.coordinate;
             ui.weak(format!("at {x:.2} {y:.2}"));
         }
@@ -200,8 +200,8 @@ fn gaps(ui: &Ui) -> Vec2 {
 }
 
 /// Shows the image value before and after tonemapping.
-fn picture(ui: &mut Ui, light: Vec4, transform: DisplayTransform) {
-    egui::Grid::new("picture").num_columns(2).spacing(gaps(ui)).show(ui, |ui| {
+fn image(ui: &mut Ui, light: Vec4, transform: DisplayTransform) {
+    egui::Grid::new("image").num_columns(2).spacing(gaps(ui)).show(ui, |ui| {
         ui.label("Image, linear");
         color(ui, light.xyz());
         ui.end_row();
@@ -241,8 +241,8 @@ fn ball(ui: &mut Ui, normal: Vec3) {
     let painter = ui.painter();
     // Dark at the edge, bright at the center.
     for step in 0..6_u8 {
-        let share = 1.0 - f32::from(step) / 6.0;
-        painter.circle_filled(middle, radius * share, Color32::from_gray(50 + 18 * step));
+        let fraction = 1.0 - f32::from(step) / 6.0;
+        painter.circle_filled(middle, radius * fraction, Color32::from_gray(50 + 18 * step));
     }
     let tip = middle + Vec2::new(normal.x, -normal.y) * radius;
     painter.line_segment([middle, tip], Stroke::new(1.5, Color32::from_rgb(255, 200, 60)));

@@ -75,7 +75,7 @@ impl ProbeJob {
         }
         let now = ui.input(|input| input.time);
         let waits = MIN_COPY_INTERVAL - (now - self.arrived);
-        let side = session.inspect.place().map_or(ComparedSide::First, |place| session.compare.side(place.x));
+        let side = session.inspect.position().map_or(ComparedSide::First, |position| session.compare.side(position.x));
         if let Some((side, shot, capture)) = renderer.take_capture() {
             self.arrived = now;
             self.worker.submit(move |_| Ok(Answer::CapturedImage(Arc::new(read(side, shot, &capture)?))));
@@ -118,14 +118,14 @@ impl ProbeJob {
 
     /// Requests the values of the pixel under the pointer, unless they are already known.
     fn ask(&mut self, inspect: &Inspection, side: ComparedSide) {
-        let Some((captured, place)) =
-            self.captured.as_ref().filter(|captured| captured.side == side).zip(inspect.place())
+        let Some((captured, position)) =
+            self.captured.as_ref().filter(|captured| captured.side == side).zip(inspect.position())
         else {
             return;
         };
         let size = captured.inputs.shot().size;
-        let at = |share: f32, side: u32| ((share * side as f32) as u32).min(side - 1);
-        let pixel = UVec2::new(at(place.x, size.x), at(place.y, size.y));
+        let at = |fraction: f32, side: u32| ((fraction * side as f32) as u32).min(side - 1);
+        let pixel = UVec2::new(at(position.x, size.x), at(position.y, size.y));
         // A request waits for the previous answer; otherwise a moving pointer would never get one.
         if self.is_pending || self.requested == Some(pixel) {
             return;
@@ -141,7 +141,7 @@ impl ProbeJob {
                 side: captured.side,
                 names,
                 probe,
-                front_share: captured.inputs.front_share(pixel),
+                front_fraction: captured.inputs.front_fraction(pixel),
                 transform: DisplayTransform { exposure: camera.exposure.exp2(), tonemap: camera.tonemap },
             }))
         });

@@ -48,8 +48,8 @@ impl ScreenProjection {
         let depth = self.depth(point);
         (depth >= self.near).then(|| {
             let offset = (point - self.eye) / depth;
-            let share = vec2(offset.dot(self.right) / self.reach.x, -offset.dot(self.up) / self.reach.y);
-            self.rect.center() + 0.5 * self.rect.size() * share
+            let fraction = vec2(offset.dot(self.right) / self.reach.x, -offset.dot(self.up) / self.reach.y);
+            self.rect.center() + 0.5 * self.rect.size() * fraction
         })
     }
 
@@ -69,8 +69,8 @@ impl ScreenProjection {
 
     /// Returns the ray through a position in the window.
     pub fn ray(&self, at: Pos2) -> Ray {
-        let share = (at - self.rect.center()) / (0.5 * self.rect.size());
-        let direction = self.ahead + self.right * (share.x * self.reach.x) - self.up * (share.y * self.reach.y);
+        let fraction = (at - self.rect.center()) / (0.5 * self.rect.size());
+        let direction = self.ahead + self.right * (fraction.x * self.reach.x) - self.up * (fraction.y * self.reach.y);
         Ray { origin: self.eye, direction: direction.normalize_or(self.ahead) }
     }
 

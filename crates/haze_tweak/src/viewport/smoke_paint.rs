@@ -123,12 +123,12 @@ fn begin(session: &mut Session) -> Option<Stroke> {
     }
 }
 
-/// Ramps that the smoke at a pixel looks up by its own place, with the light that they give.
+/// Ramps that the smoke at a pixel looks up by its own position, with the light that they give.
 fn lookups(probe: &SystemProbe) -> impl Iterator<Item = Lookup> {
     let of_lights = probe.lights.iter().flat_map(|light| {
         let at = Vec2::new(light.coordinate, probe.coverage_coordinate);
         let brightness = luminance(light.diffuse);
-        let [front, back] = [1.0 - light.backlight, light.backlight].map(|share| share * brightness);
+        let [front, back] = [1.0 - light.backlight, light.backlight].map(|fraction| fraction * brightness);
         [("diffuse_ramp", front), ("backlight_ramp", back)].map(|(field, light)| Lookup { field, at, light })
     });
     let of_fire =

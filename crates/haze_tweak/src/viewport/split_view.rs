@@ -18,9 +18,9 @@ pub fn comparison_image(ui: &Ui, session: &mut Session, shot: &Shot) -> Option<C
     }
     let wake = session.repaint.clone();
     match session.cpu_render_job.poll_or_start(shot, move || wake.call()) {
-        CpuRenderState::Ready(picture) => {
+        CpuRenderState::Ready(image) => {
             session.messages.clear("reference");
-            return Some(ComparisonImage::Image(picture, display_transform(shot)));
+            return Some(ComparisonImage::Image(image, display_transform(shot)));
         }
         CpuRenderState::Later(wait) => ui.ctx().request_repaint_after(wait),
         CpuRenderState::Failed(error) => session.messages.error("reference", error),
@@ -29,7 +29,7 @@ pub fn comparison_image(ui: &Ui, session: &mut Session, shot: &Shot) -> Option<C
     None
 }
 
-/// Share of the width by which an arrow key moves the divider.
+/// Fraction of the width by which an arrow key moves the divider.
 const STEP: f32 = 0.02;
 
 /// Draws the divider between two images and moves it by drag or arrow keys.
@@ -78,9 +78,9 @@ pub fn labels(ui: &Ui, rect: egui::Rect, session: &Session) {
     let second = format!("B  {}", against.name());
     let what = "Time of the smoke, if the device can measure it";
     text_plate(ui, rect, egui::Align2::LEFT_BOTTOM, &(first + &of_first.unwrap_or_default())).on_hover_text(what);
-    let place = text_plate(ui, rect, egui::Align2::RIGHT_BOTTOM, &(second + &of_second.unwrap_or_default()));
-    let above = rect.with_max_y(place.rect.top());
-    place.on_hover_text(what);
+    let plate = text_plate(ui, rect, egui::Align2::RIGHT_BOTTOM, &(second + &of_second.unwrap_or_default()));
+    let above = rect.with_max_y(plate.rect.top());
+    plate.on_hover_text(what);
     if let Some(text) = session.psnr_job.text() {
         text_plate(ui, above, egui::Align2::RIGHT_BOTTOM, &text).on_hover_text(
             "Peak signal-to-noise ratio of the two images, over all pixels and at depth edges. Higher is more alike.",
@@ -107,7 +107,7 @@ mod tests {
     use egui_kittest::kittest::{NodeT as _, Queryable as _};
 
     use super::*;
-    use crate::window::testing::{measured, picture, window};
+    use crate::window::testing::{measured, screenshot, window};
 
     #[test]
     fn the_divider_can_be_moved_by_keys() {
@@ -130,7 +130,7 @@ mod tests {
         let mut label = |against: CompareWith, sign: &str, unit: &str| {
             harness.state_mut().session.compare.against = Some(against);
             for _ in 0..300 {
-                picture(&mut harness);
+                screenshot(&mut harness);
                 let label = harness.query_by_label_contains(sign).and_then(|node| node.accesskit_node().label());
                 if let Some(label) = label.filter(|label| label.ends_with(unit)) {
                     return label;

@@ -17,7 +17,7 @@ use crate::session::smoke_geometry::SmokeGeometry;
 use crate::session::view_options::Tab;
 use crate::window::Window;
 use crate::window::drag_end::split_events_at_buttons;
-use crate::window::testing::{brightness, picture, window};
+use crate::window::testing::{brightness, screenshot, window};
 
 const SIZE: [f32; 2] = [1100.0, 700.0];
 
@@ -39,26 +39,26 @@ fn viewport(harness: &Harness<'_, Window>) -> Rect {
 }
 
 /// Presses a pointer button, moves along positions and releases it.
-fn drag(harness: &mut Harness<'_, Window>, button: PointerButton, places: &[Pos2]) {
+fn drag(harness: &mut Harness<'_, Window>, button: PointerButton, positions: &[Pos2]) {
     let press = |pos, pressed| Event::PointerButton { pos, button, pressed, modifiers: Modifiers::NONE };
-    harness.hover_at(places[0]);
-    harness.event(press(places[0], true));
-    for &place in &places[1..] {
-        harness.hover_at(place);
+    harness.hover_at(positions[0]);
+    harness.event(press(positions[0], true));
+    for &position in &positions[1..] {
+        harness.hover_at(position);
     }
-    harness.event(press(places[places.len() - 1], false));
+    harness.event(press(positions[positions.len() - 1], false));
     harness.run();
 }
 
 /// Moves the pointer along positions with a button held, in a single frame as after a long wait. The window then splits
 /// the events as for a display.
-fn flick(harness: &mut Harness<'_, Window>, button: PointerButton, places: &[Pos2]) {
+fn flick(harness: &mut Harness<'_, Window>, button: PointerButton, positions: &[Pos2]) {
     let press = |pos, pressed| Event::PointerButton { pos, button, pressed, modifiers: Modifiers::NONE };
-    let first = places[0];
-    let last = places[places.len() - 1];
+    let first = positions[0];
+    let last = positions[positions.len() - 1];
     harness.hover_at(first);
     harness.step();
-    let moves = places[1..].iter().map(|&place| Event::PointerMoved(place));
+    let moves = positions[1..].iter().map(|&position| Event::PointerMoved(position));
     let mut events: Vec<_> = [press(first, true)].into_iter().chain(moves).chain([press(last, false)]).collect();
     let mut later = Vec::new();
     loop {
@@ -103,7 +103,7 @@ fn a_muted_light_is_not_in_the_image_but_stays_in_the_preset() {
     let mut harness = lit(Light { intensity: 200.0, ..Light::default() });
     harness.state_mut().session.view.tab = Tab::Light;
     let part = viewport(&harness);
-    let lit = brightness(&picture(&mut harness), part);
+    let lit = brightness(&screenshot(&mut harness), part);
     let click = |harness: &mut Harness<'_, Window>, label| {
         harness.get_by_label(label).click();
         harness.run();
@@ -112,11 +112,11 @@ fn a_muted_light_is_not_in_the_image_but_stays_in_the_preset() {
         harness.run();
     };
     click(&mut harness, "Mute: hide this light: Point 1");
-    let dark = brightness(&picture(&mut harness), part);
+    let dark = brightness(&screenshot(&mut harness), part);
     assert!(dark < lit - 5.0, "{dark} {lit}");
     assert_eq!(undo_name(&harness).as_deref(), Some("Light removed"), "only the test's own change");
     click(&mut harness, "Solo: show only this light: Point 1");
-    assert!((brightness(&picture(&mut harness), part) - lit).abs() < 0.5);
+    assert!((brightness(&screenshot(&mut harness), part) - lit).abs() < 0.5);
 }
 
 #[test]
@@ -201,9 +201,9 @@ fn a_light_is_put_behind_the_clicked_smoke_or_the_smoke_in_the_image() {
     harness.run();
     let is_behind = |harness: &Harness<'_, Window>| {
         let projection = projection(harness);
-        let place = light(harness).position;
-        assert!(projection.depth(place) > projection.depth(top), "{place}");
-        projection.project(place).unwrap()
+        let position = light(harness).position;
+        assert!(projection.depth(position) > projection.depth(top), "{position}");
+        projection.project(position).unwrap()
     };
     assert!(is_behind(&harness).distance(at) < 1.0, "not under the pointer");
     // So close that the center of all smoke is outside the image.
@@ -252,15 +252,15 @@ fn one_click_changes_the_role_of_a_light_and_a_preset_has_one_key_light() {
 fn overlays_are_drawn_while_they_are_on() {
     let mut harness = lit(Light::default());
     let part = viewport(&harness);
-    let plain = picture(&mut harness);
+    let plain = screenshot(&mut harness);
     for name in ["Bounds", "Lit plane", "Particles", "Grid"] {
         let mut click = || {
             harness.get_by_label(name).click();
             harness.remove_cursor();
             harness.run();
             // Overlays use data of the previous image.
-            picture(&mut harness);
-            picture(&mut harness)
+            screenshot(&mut harness);
+            screenshot(&mut harness)
         };
         let on = click();
         let off = click();

@@ -81,9 +81,9 @@ impl FieldVisitor for Switches<'_> {
 
     fn choice(&mut self, name: &'static str, value: &mut dyn Choice) {
         let mut index = value.index();
-        for (place, &choice) in value.names().iter().enumerate() {
+        for (position, &choice) in value.names().iter().enumerate() {
             let tooltip = self.tooltips.choice(&format!("environment.{name}"), choice).unwrap_or_default();
-            self.ui.radio_value(&mut index, place, display_name(choice)).on_hover_text(tooltip);
+            self.ui.radio_value(&mut index, position, display_name(choice)).on_hover_text(tooltip);
         }
         value.set_index(index);
         self.ui.separator();

@@ -18,14 +18,14 @@ pub struct Target<'a> {
     pub device: &'a wgpu::Device,
     pub queue: &'a wgpu::Queue,
     pub encoder: &'a mut wgpu::CommandEncoder,
-    pub place: ViewportInPixels,
+    pub viewport: ViewportInPixels,
 }
 
 impl Target<'_> {
     pub fn shown(&self) -> TonemapUniform {
         TonemapUniform {
-            origin: Vec2::new(self.place.left_px as f32, self.place.top_px as f32),
-            size: Vec2::new(self.place.width_px as f32, self.place.height_px as f32),
+            origin: Vec2::new(self.viewport.left_px as f32, self.viewport.top_px as f32),
+            size: Vec2::new(self.viewport.width_px as f32, self.viewport.height_px as f32),
             ..TonemapUniform::default()
         }
     }
@@ -86,8 +86,8 @@ impl CachedRender {
         self.offscreen.invalidate_scene();
     }
 
-    pub fn picture(&self, view: DebugView) -> Option<&wgpu::Texture> {
-        self.offscreen.picture(view)
+    pub fn image(&self, view: DebugView) -> Option<&wgpu::Texture> {
+        self.offscreen.image(view)
     }
 }
 

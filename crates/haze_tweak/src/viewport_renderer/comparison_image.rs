@@ -21,7 +21,7 @@ pub enum ComparisonImage {
 
 /// Texture of an image that was rendered elsewhere.
 pub struct UploadedImage {
-    picture: Arc<Image<Vec4>>,
+    image: Arc<Image<Vec4>>,
     pub texture: wgpu::Texture,
 }
 
@@ -30,7 +30,7 @@ impl ComparisonImage {
     pub fn reduced(&self, divisor: u32) -> Self {
         match self {
             Self::Shot(shot) => Self::Shot(Box::new(reduced(shot, divisor))),
-            Self::Image(picture, transform) => Self::Image(picture.clone(), *transform),
+            Self::Image(image, transform) => Self::Image(image.clone(), *transform),
         }
     }
 
@@ -44,24 +44,24 @@ impl ComparisonImage {
 
 impl UploadedImage {
     /// Uploads an image, or drops the texture if there is none. Returns true if the texture was replaced.
-    pub fn sync_upload(uploaded: &mut Option<Self>, target: &Target<'_>, picture: Option<&Arc<Image<Vec4>>>) -> bool {
-        let is_up = match (&*uploaded, picture) {
-            (Some(uploaded), Some(picture)) => Arc::ptr_eq(&uploaded.picture, picture),
+    pub fn sync_upload(uploaded: &mut Option<Self>, target: &Target<'_>, image: Option<&Arc<Image<Vec4>>>) -> bool {
+        let is_up = match (&*uploaded, image) {
+            (Some(uploaded), Some(image)) => Arc::ptr_eq(&uploaded.image, image),
             (None, None) => true,
             _ => false,
         };
         if !is_up {
-            *uploaded = picture.map(|picture| Self { texture: upload(target, picture), picture: picture.clone() });
+            *uploaded = image.map(|image| Self { texture: upload(target, image), image: image.clone() });
         }
         !is_up
     }
 }
 
 /// Uploads a linear HDR image as half floats.
-fn upload(target: &Target<'_>, picture: &Image<Vec4>) -> wgpu::Texture {
-    let size = wgpu::Extent3d { width: picture.size.x, height: picture.size.y, depth_or_array_layers: 1 };
+fn upload(target: &Target<'_>, image: &Image<Vec4>) -> wgpu::Texture {
+    let size = wgpu::Extent3d { width: image.size.x, height: image.size.y, depth_or_array_layers: 1 };
     let texture = target.device.create_texture(&wgpu::TextureDescriptor {
-        label: Some("made picture"),
+        label: Some("made image"),
         size,
         mip_level_count: 1,
         sample_count: 1,
@@ -70,7 +70,7 @@ fn upload(target: &Target<'_>, picture: &Image<Vec4>) -> wgpu::Texture {
         usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST | wgpu::TextureUsages::COPY_SRC,
         view_formats: &[],
     });
-    let texels: Vec<_> = picture.texels.iter().flat_map(|texel| texel.to_array().map(half::f16::from_f32)).collect();
+    let texels: Vec<_> = image.texels.iter().flat_map(|texel| texel.to_array().map(half::f16::from_f32)).collect();
     let bytes: Vec<_> = texels.iter().flat_map(|channel| channel.to_le_bytes()).collect();
     let rows = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(8 * size.width), rows_per_image: None };
     target.queue.write_texture(texture.as_image_copy(), &bytes, rows, size);

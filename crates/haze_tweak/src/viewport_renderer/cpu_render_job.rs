@@ -71,13 +71,13 @@ impl CpuRenderJob {
             let shot = shot.clone();
             self.ticket = Some(worker.submit(move |_| {
                 let begun = clock::now();
-                shot.render_on_cpu().map(|picture| (picture, begun.elapsed()))
+                shot.render_on_cpu().map(|rendered| (rendered, begun.elapsed()))
             }));
         }
         match self.worker.as_ref().and_then(Worker::poll) {
             None => CpuRenderState::Soon,
-            Some(Some(Ok((picture, took)))) => {
-                let image = Arc::new(picture);
+            Some(Some(Ok((rendered, took)))) => {
+                let image = Arc::new(rendered);
                 self.image = Some(image.clone());
                 self.took = Some(took);
                 CpuRenderState::Ready(image)

@@ -108,23 +108,23 @@ impl FrameTimings {
     }
 
     fn add_times(&mut self, parts: impl Iterator<Item = (&'static str, f32)>) {
-        let mut picture = vec![0.0; self.names.len()];
+        let mut image = vec![0.0; self.names.len()];
         for (name, ms) in parts {
             let at = self.names.iter().position(|known| *known == name).unwrap_or_else(|| {
                 self.names.push(name);
-                picture.push(0.0);
-                picture.len() - 1
+                image.push(0.0);
+                image.len() - 1
             });
-            picture[at] += ms;
+            image[at] += ms;
         }
-        self.frame_times.push_back(picture);
+        self.frame_times.push_back(image);
         let surplus = self.frame_times.len().saturating_sub(MAX_KEPT_IMAGES);
         self.frame_times.drain(..surplus);
     }
 
     /// Returns the mean time of a pass over the images that are kept, milliseconds.
     pub fn mean(&self, pass: usize) -> f32 {
-        let sum: f32 = self.frame_times.iter().filter_map(|picture| picture.get(pass)).sum();
+        let sum: f32 = self.frame_times.iter().filter_map(|image| image.get(pass)).sum();
         sum / self.frame_times.len().max(1) as f32
     }
 }

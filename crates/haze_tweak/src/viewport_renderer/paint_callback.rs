@@ -50,8 +50,8 @@ impl CallbackTrait for Callback {
         if self.renderer.health().is_lost() {
             return Vec::new();
         }
-        let place = ViewportInPixels::from_points(&self.rect, screen.pixels_per_point, screen.size_in_pixels);
-        let mut target = Target { device, queue, encoder, place };
+        let viewport = ViewportInPixels::from_points(&self.rect, screen.pixels_per_point, screen.size_in_pixels);
+        let mut target = Target { device, queue, encoder, viewport };
         let mut state = self.renderer.lock();
         state.has_unpainted_commands = true;
         match &self.content {
@@ -71,8 +71,8 @@ impl CallbackTrait for Callback {
     }
 
     fn paint(&self, info: egui::PaintCallbackInfo, pass: &mut wgpu::RenderPass<'static>, _: &CallbackResources) {
-        let place = info.viewport_in_pixels();
-        if place.width_px <= 0 || place.height_px <= 0 {
+        let viewport = info.viewport_in_pixels();
+        if viewport.width_px <= 0 || viewport.height_px <= 0 {
             return;
         }
         let mut state = self.renderer.lock();

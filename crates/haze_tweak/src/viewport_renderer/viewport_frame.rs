@@ -24,7 +24,7 @@ use crate::platform::clock::{self, Duration, Instant};
 pub struct ViewportFrame {
     pub shot: Shot,
     pub other: Option<ComparisonImage>,
-    /// Share of the width at which the second image begins, 0 to 1.
+    /// Fraction of the width at which the second image begins, 0 to 1.
     pub split: f32,
     /// Factor on the difference of the two images; 0 shows the two side by side.
     pub difference: f32,
@@ -38,7 +38,7 @@ pub struct TargetTexels {
     pub scale: u32,
     pub lit_depth: f32,
     /// Size of the image in pixels.
-    pub picture: UVec2,
+    pub image: UVec2,
 }
 
 /// Cost of drawing the image.
@@ -227,14 +227,14 @@ impl RendererState {
     /// Records the texels of all systems. Returns true if they have changed.
     pub fn update_target_texels(&mut self, systems: usize) -> bool {
         let renderer = self.main.offscreen.renderer();
-        let picture = self.main.shot.as_ref().map_or(UVec2::ONE, |shot| shot.size);
+        let image = self.main.shot.as_ref().map_or(UVec2::ONE, |shot| shot.size);
         let of = |key| {
             renderer.targets(key).map(|targets| TargetTexels {
                 origin: targets.origin,
                 size: targets.size,
                 scale: targets.scale,
                 lit_depth: targets.lit_depth,
-                picture,
+                image,
             })
         };
         let texels = (0..systems as u64).map(of).collect();
@@ -267,7 +267,7 @@ impl RendererState {
         if is_new || self.pair.is_none() {
             self.pair = Some(self.tonemap_pass.bind(target.device, &first, &second));
         }
-        let width = target.place.width_px as f32;
+        let width = target.viewport.width_px as f32;
         let transform = display_transform(shot);
         let transforms = [transform, other.as_ref().map_or(transform, ComparisonImage::transform)];
         let shown = TonemapUniform {
@@ -312,7 +312,7 @@ impl RendererState {
     fn record_comparison(&mut self, target: &mut Target<'_>, other: Option<&ComparisonImage>) -> bool {
         let (drawn, uploaded) = match other {
             Some(ComparisonImage::Shot(shot)) => (Some(&**shot), None),
-            Some(ComparisonImage::Image(picture, _)) => (None, Some(picture)),
+            Some(ComparisonImage::Image(image, _)) => (None, Some(image)),
             None => (None, None),
         };
         let mut is_new = false;
@@ -351,9 +351,9 @@ impl RendererState {
 
     /// Returns the image and the second one; the image twice if there is no second.
     fn image_pair(&self, shot: &Shot, other: Option<&ComparisonImage>) -> Option<[wgpu::Texture; 2]> {
-        let first = self.main.picture(shot.debug_view)?;
+        let first = self.main.image(shot.debug_view)?;
         let drawn = match other {
-            Some(ComparisonImage::Shot(shot)) => self.other.as_ref().and_then(|cached| cached.picture(shot.debug_view)),
+            Some(ComparisonImage::Shot(shot)) => self.other.as_ref().and_then(|cached| cached.image(shot.debug_view)),
             _ => None,
         };
         let second = drawn.or(self.uploaded.as_ref().map(|uploaded| &uploaded.texture));
@@ -377,9 +377,9 @@ impl RendererState {
                 self.strip.tonemap_bindings = Default::default();
             }
         }
-        let Some(picture) = self.strip.offscreen.picture(view) else { return };
+        let Some(image) = self.strip.offscreen.image(view) else { return };
         let tonemap_bindings = self.strip.tonemap_bindings[view as usize]
-            .get_or_insert_with(|| self.tonemap_pass.bind(target.device, picture, picture));
+            .get_or_insert_with(|| self.tonemap_pass.bind(target.device, image, image));
         let shown = target.shown().with_transforms([display_transform(shot); 2]);
         self.tonemap_pass.prepare(target.queue, tonemap_bindings, &shown);
     }

@@ -291,9 +291,9 @@ impl Window {
         panels::export_dialog::panel(ui, &mut self.export_job, &mut self.session);
         self.ask_export();
         panels::copy_question::panel(ui, &mut self.session);
-        let has_no_place = [&mut self.session.ramps.needs_saved_preset, &mut self.session.sprites.needs_saved_preset]
+        let cannot_save = [&mut self.session.ramps.needs_saved_preset, &mut self.session.sprites.needs_saved_preset]
             .map(std::mem::take);
-        if has_no_place.contains(&true) {
+        if cannot_save.contains(&true) {
             self.file_actions.save_as(&self.session);
         }
         panels::file_menu::questions(ui, &mut self.file_actions, &mut self.session);
@@ -336,11 +336,11 @@ impl Window {
             ui.ctx().request_repaint();
         }
         match self.renderer.error() {
-            Some(error) => self.session.messages.error("picture", error),
-            None => self.session.messages.clear("picture"),
+            Some(error) => self.session.messages.error("image", error),
+            None => self.session.messages.clear("image"),
         }
         if let Some(error) = self.renderer.health().take_error() {
-            // An error in the commands of a frame can leave the window without a picture, and without this message.
+            // An error in the commands of a frame can leave the window without an image, and without this message.
             print_error(&error);
             self.session.messages.error("device", error);
         }

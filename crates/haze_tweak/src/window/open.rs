@@ -28,7 +28,7 @@ struct KeptState {
     /// Memory of egui: sizes of panels, collapsed sections.
     memory: Option<egui::Memory>,
     /// Position and size of the window.
-    place: egui::ViewportBuilder,
+    viewport: egui::ViewportBuilder,
     is_lost: bool,
     /// Number of frames that were shown.
     frames: u32,
@@ -42,8 +42,8 @@ pub fn open(start: Start, size: Option<egui::Vec2>) -> Result<(), Error> {
     check_address_space()?;
     let destroy_in = std::env::var(LOSE_DEVICE).unwrap_or_default();
     let destroy_in = destroy_in.split(',').filter_map(|frame| frame.parse().ok()).collect();
-    let place = egui::ViewportBuilder::default().with_inner_size(size.unwrap_or(DEFAULT_SIZE));
-    let mut kept = KeptState { start: Some(start), memory: None, place, is_lost: false, frames: 0, destroy_in };
+    let viewport = egui::ViewportBuilder::default().with_inner_size(size.unwrap_or(DEFAULT_SIZE));
+    let mut kept = KeptState { start: Some(start), memory: None, viewport, is_lost: false, frames: 0, destroy_in };
     let mut is_sized = size.is_some();
     let mut last_loss = None;
     loop {
@@ -70,7 +70,7 @@ const DEFAULT_SOFTWARE_SIZE: egui::Vec2 = egui::Vec2::new(1000.0, 640.0);
 
 fn open_once(kept: &mut KeptState, is_sized: bool) -> Result<(), Error> {
     let options = eframe::NativeOptions {
-        viewport: kept.place.clone().with_app_id("haze").with_title("haze").with_min_inner_size([640.0, 400.0]),
+        viewport: kept.viewport.clone().with_app_id("haze").with_title("haze").with_min_inner_size([640.0, 400.0]),
         wgpu_options: egui_wgpu::WgpuConfiguration {
             wgpu_setup: setup(),
             on_surface_status: paced_surface_handler(),
@@ -119,7 +119,7 @@ impl eframe::App for WindowApp<'_> {
             }
         } else if !std::mem::replace(&mut self.kept.is_lost, true) {
             self.kept.memory = Some(context.memory(Clone::clone));
-            self.kept.place = context.input(|input| place(input.viewport()));
+            self.kept.viewport = context.input(|input| viewport_builder(input.viewport()));
             context.send_viewport_cmd(egui::ViewportCommand::Close);
         }
     }
@@ -155,13 +155,13 @@ impl Drop for WindowApp<'_> {
 }
 
 /// Returns a builder with the position and size of this window.
-fn place(window: &egui::ViewportInfo) -> egui::ViewportBuilder {
-    let mut place = egui::ViewportBuilder::default()
+fn viewport_builder(window: &egui::ViewportInfo) -> egui::ViewportBuilder {
+    let mut viewport = egui::ViewportBuilder::default()
         .with_maximized(window.maximized.unwrap_or_default())
         .with_fullscreen(window.fullscreen.unwrap_or_default());
-    place.inner_size = window.inner_rect.map(|rect| rect.size());
-    place.position = window.outer_rect.map(|rect| rect.min);
-    place
+    viewport.inner_size = window.inner_rect.map(|rect| rect.size());
+    viewport.position = window.outer_rect.map(|rect| rect.min);
+    viewport
 }
 
 /// Writes unsaved work to the recovery file, and returns the error that ends the program.

@@ -17,7 +17,7 @@ use crate::platform::web::{page, storage};
 use crate::viewport_renderer::ViewportRenderer;
 use crate::viewport_renderer::device_health::DeviceHealth;
 
-/// Frames after which the picture is on the screen.
+/// Frames after which the image is on the screen.
 const SETTLED_FRAMES: u32 = 3;
 
 /// State that is kept while one canvas goes and the next comes.

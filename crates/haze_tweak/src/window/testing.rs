@@ -118,18 +118,18 @@ pub fn click_at(harness: &mut Harness<'_, Window>, pos: egui::Pos2, button: egui
 }
 
 /// Returns an image of the window.
-pub fn picture(harness: &mut Harness<'_, Window>) -> RgbaImage {
+pub fn screenshot(harness: &mut Harness<'_, Window>) -> RgbaImage {
     harness.step();
     harness.render().unwrap()
 }
 
 /// Returns the mean brightness of a part of an image, 0 to 255.
-pub fn brightness(picture: &RgbaImage, part: egui::Rect) -> f64 {
+pub fn brightness(image: &RgbaImage, part: egui::Rect) -> f64 {
     let mut sum = 0.0;
     let mut count = 0.0;
     for y in part.top() as u32..part.bottom() as u32 {
         for x in part.left() as u32..part.right() as u32 {
-            let [r, g, b, _] = picture.get_pixel(x, y).0;
+            let [r, g, b, _] = image.get_pixel(x, y).0;
             sum += (f64::from(r) + f64::from(g) + f64::from(b)) / 3.0;
             count += 1.0;
         }

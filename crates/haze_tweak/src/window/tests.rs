@@ -9,7 +9,7 @@ use egui_kittest::{Harness, SnapshotOptions};
 use haze_core::settings::DebugView;
 
 use super::Window;
-use super::testing::{brightness, picture, window};
+use super::testing::{brightness, screenshot, window};
 
 const SIZE: Vec2 = Vec2::new(1000.0, 640.0);
 
@@ -25,7 +25,7 @@ fn viewport(harness: &Harness<'_, Window>) -> Rect {
 /// Returns the brightness of the viewport.
 fn shown(harness: &mut Harness<'_, Window>) -> f64 {
     let part = viewport(harness);
-    brightness(&picture(harness), part)
+    brightness(&screenshot(harness), part)
 }
 
 /// Types a number into the row of this name.
@@ -83,7 +83,7 @@ fn click(harness: &mut Harness<'_, Window>, button: &str) {
 fn decibels(harness: &mut Harness<'_, Window>) -> f32 {
     let mut last = None;
     for _ in 0..100 {
-        picture(harness);
+        screenshot(harness);
         std::thread::sleep(std::time::Duration::from_millis(30));
         let text = harness.query_by_label_contains("PSNR").and_then(|node| node.accesskit_node().label());
         if text.is_some() && text == last {
@@ -122,7 +122,7 @@ fn a_comparison_shows_the_image_error_of_a_saving() {
     assert!(judged < saved, "{judged} {saved}");
     assert!(decibels(&mut harness) > figure + 5.0, "the reference is closer than a reduced target to a full one");
     click(&mut harness, "CPU");
-    assert!((shown(&mut harness) - alone).abs() < 1.0, "a second click, and the picture stands alone");
+    assert!((shown(&mut harness) - alone).abs() < 1.0, "a second click, and the image stands alone");
 }
 
 #[test]
@@ -134,9 +134,9 @@ fn values_of_the_compared_preset_can_be_copied() {
     harness.run_steps(2);
     let divider = harness.get_by_label("divider").rect();
     let view = viewport(&harness);
-    let picture = picture(&mut harness);
-    let left = brightness(&picture, Rect::from_min_max(view.min, divider.left_bottom()));
-    let right = brightness(&picture, Rect::from_min_max(divider.right_top(), view.max));
+    let image = screenshot(&mut harness);
+    let left = brightness(&image, Rect::from_min_max(view.min, divider.left_bottom()));
+    let right = brightness(&image, Rect::from_min_max(divider.right_top(), view.max));
     assert!(left > right + 15.0, "{left} {right}");
     harness.get_by_label("Use B").click();
     harness.run_steps(3);
@@ -255,16 +255,16 @@ fn escape_closes_a_menu_and_nothing_else() {
 #[test]
 fn time_is_played_and_stepped() {
     let mut harness = column();
-    let before = picture(&mut harness);
+    let before = screenshot(&mut harness);
     harness.get_by_label("Next frame (.)").click();
     harness.run_steps(2);
-    assert!(picture(&mut harness) != before);
+    assert!(screenshot(&mut harness) != before);
     harness.get_by_label("Previous frame (,)").click();
     harness.run_steps(2);
     harness.get_by_label("viewport").hover();
     harness.run_steps(1);
     let part = viewport(&harness);
-    assert!((brightness(&picture(&mut harness), part) - brightness(&before, part)).abs() < 0.01);
+    assert!((brightness(&screenshot(&mut harness), part) - brightness(&before, part)).abs() < 0.01);
 }
 
 /// Writes images of every tab in several sizes and both themes to the folder that HAZE_LOOK names, for visual
@@ -280,7 +280,7 @@ fn write_images_of_every_tab() {
     for (size, theme) in sizes.flat_map(|size| [(size, Theme::Dark), (size, Theme::Light)]) {
         let mut harness = window("column", Vec2::new(size.0 as f32, size.1 as f32), theme);
         let save = |harness: &mut Harness<'_, Window>, name: &str| {
-            picture(harness).save(folder.join(format!("{name}_{}_{theme:?}.png", size.0))).unwrap();
+            screenshot(harness).save(folder.join(format!("{name}_{}_{theme:?}.png", size.0))).unwrap();
         };
         for (_, name, _) in crate::panels::settings_panel::TABS {
             harness.get_by_label(name).click();
@@ -288,7 +288,7 @@ fn write_images_of_every_tab() {
             // Waits for results of worker threads.
             for _ in 0..5 {
                 std::thread::sleep(std::time::Duration::from_millis(20));
-                picture(&mut harness);
+                screenshot(&mut harness);
             }
             save(&mut harness, name);
         }
@@ -329,7 +329,7 @@ fn write_images_of_every_tab() {
         harness.hover_at(beside);
         for _ in 0..5 {
             std::thread::sleep(std::time::Duration::from_millis(20));
-            picture(&mut harness);
+            screenshot(&mut harness);
         }
         save(&mut harness, "compare");
         harness.key_press(Key::F1);

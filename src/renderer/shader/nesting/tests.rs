@@ -117,8 +117,8 @@ fn what_is_long_but_not_deep_is_accepted() {
 fn the_place_counts_characters() {
     let text = format!("// ü\nconst A = /* ü */ 1{};", "+1".repeat(MAX_DEPTH));
     // The `=` counts too.
-    let place = check_nesting(&text).map_err(|refused| (refused.line, refused.column)).unwrap_err();
-    assert_eq!(place, (2, 20 + 2 * (MAX_DEPTH - 1)));
+    let location = check_nesting(&text).map_err(|refused| (refused.line, refused.column)).unwrap_err();
+    assert_eq!(location, (2, 20 + 2 * (MAX_DEPTH - 1)));
 }
 
 #[test]

@@ -100,11 +100,11 @@ fn attributes_and_data_of_an_application_do_not_refuse_a_file() {
 
 #[test]
 fn instances_are_shown() {
-    let places: Vec<f32> = (0..5).flat_map(|index| [2.0 * index as f32 - 4.0, 0.0, 0.0]).collect();
+    let positions: Vec<f32> = (0..5).flat_map(|index| [2.0 * index as f32 - 4.0, 0.0, 0.0]).collect();
     let quarter = Quat::from_rotation_x(std::f32::consts::FRAC_PI_2).to_array();
     for is_required in [false, true] {
         let mut file = File::new();
-        let translation = file.floats(&places, "VEC3", 5);
+        let translation = file.floats(&positions, "VEC3", 5);
         // The last is turned away and seen from its edge; rotations are bytes here.
         let rotations: Vec<i8> = (0..5)
             .flat_map(
@@ -131,7 +131,7 @@ fn instances_are_shown() {
     }
 }
 
-/// Thousands of instances in one place: rays are tested against few triangles.
+/// Thousands of instances in one position: rays are tested against few triangles.
 #[test]
 fn copies_in_one_place_are_shown_once() {
     const COPIES: usize = 3000;

@@ -391,7 +391,7 @@ pub const SYSTEM_RULES: &[NoEffectRule<PresetSystem>] = &[
         |s, _| s.emitter.obstacle_margin <= 0.0,
         &["emitter.obstacle", "emitter.obstacle_extent"],
     ),
-    rule("only at a small_share above 0", |s, _| s.emitter.small_share <= 0.0, &["emitter.small_size"]),
+    rule("only at a small_fraction above 0", |s, _| s.emitter.small_fraction <= 0.0, &["emitter.small_size"]),
     rule("only where the extent is not 0", |s, _| s.emitter.extent == Vec3::ZERO, &["emitter.shape", "emitter.burst"]),
     rule(
         "only with buoyancy, a floor, an obstacle, anchor, rings, wind_shear, orbit, or shape disc",

@@ -5,13 +5,13 @@ use image::{ImageBuffer, Rgb};
 use std::path::Path;
 
 /// Fits an image and bakes the result; returns the fit and its largest error.
-fn fit_and_bake(name: &str, picture: &DynamicImage) -> (RampFit, f32) {
-    let fitted = fit_image(picture, None).unwrap();
+fn fit_and_bake(name: &str, image: &DynamicImage) -> (RampFit, f32) {
+    let fitted = fit_image(image, None).unwrap();
     let baked = fitted.recipe.bake().unwrap().into_rgb16();
-    let picture = picture.to_rgb16();
-    let off = (0..picture.height()).flat_map(|y| (0..picture.width()).map(move |x| (x, y))).map(|(x, y)| {
-        let a = picture.get_pixel(x, y).0;
-        let b = baked.get_pixel(x, y * baked.height() / picture.height()).0;
+    let image = image.to_rgb16();
+    let off = (0..image.height()).flat_map(|y| (0..image.width()).map(move |x| (x, y))).map(|(x, y)| {
+        let a = image.get_pixel(x, y).0;
+        let b = baked.get_pixel(x, y * baked.height() / image.height()).0;
         a.iter().zip(b).map(|(a, b)| a.abs_diff(b)).max().unwrap()
     });
     let off = f32::from(off.max().unwrap()) / 257.0;
@@ -24,11 +24,11 @@ fn fit_and_bake(name: &str, picture: &DynamicImage) -> (RampFit, f32) {
 #[test]
 fn every_built_in_ramp_is_reproduced_by_its_fit() {
     for ramp in builtin::RAMPS {
-        let picture = decode_png(Path::new(ramp.name), ramp.bytes).unwrap();
-        let (fitted, off) = fit_and_bake(ramp.name, &picture);
+        let image = decode_png(Path::new(ramp.name), ramp.bytes).unwrap();
+        let (fitted, off) = fit_and_bake(ramp.name, &image);
         assert!(off <= 2.0, "{}: {off}", ramp.name);
         let stops: usize = fitted.recipe.rows.iter().map(|row| row.stops.len()).sum();
-        assert!(stops <= if picture.height() == 1 { 12 } else { 400 }, "{}: {stops} stops", ramp.name);
+        assert!(stops <= if image.height() == 1 { 12 } else { 400 }, "{}: {stops} stops", ramp.name);
     }
 }
 
@@ -58,8 +58,8 @@ fn hard_edges_are_preserved() {
     let hash = |x: u32| (x.wrapping_mul(2_654_435_761) >> 16) as u16;
     let ink = strip(|x| if x == 77 { [0; 3] } else { [(x * 250) as u16, 30000, 65535] });
     let comb = strip(|x| [if x % 2 == 0 { 65535 } else { 0 }, 0, 0]);
-    for (name, picture) in [("ink", ink), ("comb", comb), ("noise", strip(|x| [hash(x), hash(x + 999), 0]))] {
-        let (_, off) = fit_and_bake(name, &picture);
+    for (name, image) in [("ink", ink), ("comb", comb), ("noise", strip(|x| [hash(x), hash(x + 999), 0]))] {
+        let (_, off) = fit_and_bake(name, &image);
         assert!(off <= 4.0, "{name}: {off}");
     }
     let (flat, _) = fit_and_bake("flat", &strip(|_| [257 * 7; 3]));
@@ -76,8 +76,8 @@ fn hard_edges_are_preserved() {
 fn equal_rows_become_one_and_the_width_is_kept() {
     let slope = |x: u32| Rgb([(x * 3) as u8, 90, 200 - (x * 2) as u8]);
     let strip = |width, height| DynamicImage::ImageRgb8(ImageBuffer::from_fn(width, height, |x, _| slope(x)));
-    let size = |picture: &DynamicImage| {
-        let recipe = fit_image(picture, None).unwrap().recipe;
+    let size = |image: &DynamicImage| {
+        let recipe = fit_image(image, None).unwrap().recipe;
         (recipe.width, recipe.height, recipe.rows.len())
     };
     assert_eq!(size(&strip(64, 16)), (64, 1, 1));
@@ -88,7 +88,7 @@ fn equal_rows_become_one_and_the_width_is_kept() {
         RampRecipe { bits: 8, height: 8, ..fit_image(&strip(64, 1), Some(1.0)).unwrap().recipe }.bake().unwrap();
     assert_eq!(size(&dithered), (64, 1, 1));
     assert_eq!(fit_image(&strip(64, 1), Some(0.5)).unwrap_err().field, "error");
-    assert_eq!(fit_image(&DynamicImage::new_rgb8(0, 0), None).unwrap_err().field, "picture");
+    assert_eq!(fit_image(&DynamicImage::new_rgb8(0, 0), None).unwrap_err().field, "image");
 }
 
 /// Image of 8 bits with noise of up to two steps in every channel, as of a brush.

@@ -17,9 +17,9 @@ fn a_gradient_has_the_exact_colors_of_its_stops() {
             assert!((srgb_from_linear(channel) * 255.0 - f32::from(expected)).abs() < 0.5, "{color}");
         }
     }
-    let picture = recipe.bake().unwrap().to_rgb8();
-    assert_eq!(picture.get_pixel(0, 0).0, [0x10, 0x20, 0x30]);
-    assert_eq!(picture.get_pixel(63, 0).0, [255, 255, 255]);
+    let image = recipe.bake().unwrap().to_rgb8();
+    assert_eq!(image.get_pixel(0, 0).0, [0x10, 0x20, 0x30]);
+    assert_eq!(image.get_pixel(63, 0).0, [255, 255, 255]);
 }
 
 #[test]

@@ -54,7 +54,7 @@ impl Puff {
         let stops = stops.max(2) as usize;
         let rows = rows.max(1) as usize;
         let ramps = if backlight { 2 } else { 1 };
-        let place = |ramp: usize, row: usize, stop: usize| (ramp * rows + row) * stops + stop;
+        let position = |ramp: usize, row: usize, stop: usize| (ramp * rows + row) * stops + stop;
         let terms = |texel: &Texel, light: Vec3| {
             let at = texel.coordinate(light);
             let against = backlight_weight(light, Vec3::Z);
@@ -63,7 +63,7 @@ impl Puff {
             for (ramp, of_ramp) in of_ramp.into_iter().enumerate().take(ramps) {
                 for (row, of_row) in knots(at.y, rows) {
                     for (stop, of_stop) in knots(at.x, stops) {
-                        terms.push((place(ramp, row, stop), of_ramp * of_row * of_stop * texel.coverage));
+                        terms.push((position(ramp, row, stop), of_ramp * of_row * of_stop * texel.coverage));
                     }
                 }
             }
@@ -78,16 +78,16 @@ impl Puff {
             for texel in &self.texels {
                 let terms = terms(texel, light);
                 equations.add(&terms, truth.texels[texel.index], weight / count);
-                terms.iter().for_each(|&(place, share)| sums[place] += share / count);
+                terms.iter().for_each(|&(position, fraction)| sums[position] += fraction / count);
             }
             let sums: Vec<_> = sums.into_iter().enumerate().collect();
             equations.add(&sums, whole / count, BRIGHTNESS * weight);
         }
         let stiffness = (equations.mean_square() * STIFFNESS) as f32;
-        (0..ramps).for_each(|ramp| equations.smooth(place(ramp, 0, 0), stops, rows, stiffness));
+        (0..ramps).for_each(|ramp| equations.smooth(position(ramp, 0, 0), stops, rows, stiffness));
         let values = equations.solve(STEPS);
         let exposure = values.iter().map(|value| value.max_element()).fold(f32::MIN_POSITIVE, f32::max);
-        let recipe = |ramp: usize| recipe(&values[place(ramp, 0, 0)..][..rows * stops], stops, exposure);
+        let recipe = |ramp: usize| recipe(&values[position(ramp, 0, 0)..][..rows * stops], stops, exposure);
         FittedRamps { diffuse: recipe(0), backlight: backlight.then(|| recipe(1)), exposure }
     }
 }
@@ -95,14 +95,14 @@ impl Puff {
 /// Converts solved values to a recipe that interpolates linearly in linear light, along rows and between rows.
 pub(super) fn recipe(values: &[Vec3], stops: usize, exposure: f32) -> RampRecipe {
     let rows = values.len() / stops;
-    let share = |index: usize, count: usize| if count > 1 { index as f32 / (count - 1) as f32 } else { 0.0 };
+    let fraction = |index: usize, count: usize| if count > 1 { index as f32 / (count - 1) as f32 } else { 0.0 };
     let stop = |(index, &value): (usize, &Vec3)| {
         let code = (value / exposure).to_array().map(srgb_from_linear);
         let color = HexColor::from_srgb(Vec3::from(code));
-        RampStop { curve: Curve::Linear, ..RampStop::new(share(index, stops), color) }
+        RampStop { curve: Curve::Linear, ..RampStop::new(fraction(index, stops), color) }
     };
     let row = |(index, values): (usize, &[Vec3])| RampRow {
-        at: share(index, rows),
+        at: fraction(index, rows),
         curve: Curve::Linear,
         stops: values.iter().enumerate().map(stop).collect(),
     };

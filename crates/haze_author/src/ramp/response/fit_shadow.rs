@@ -28,7 +28,7 @@ pub struct ShadedLight {
     /// Light of the smoke without shadow, as bright as it should be where no smoke is before the light.
     pub unshaded: Vec<Vec3>,
     /// Lookup positions in the shadow ramp.
-    pub places: Vec<Vec2>,
+    pub positions: Vec<Vec2>,
     /// Path-traced light.
     pub truth: Vec<Vec3>,
 }
@@ -42,7 +42,7 @@ const FULL_LIGHT: f64 = 100.0;
 pub fn fit_shadow_ramp(lights: &[ShadedLight], shape: ShadowShape) -> (RampRecipe, f32) {
     let stops = shape.stops.max(2) as usize;
     let rows = shape.rows.max(1) as usize;
-    let place = |row: usize, stop: usize| row * stops + stop;
+    let position = |row: usize, stop: usize| row * stops + stop;
     // The smoke's own color multiplies the ramp, so the channels have matrices of their own.
     let channels = [0, 1, 2].map(|channel| {
         let mut equations = NormalEquations::new(rows * stops);
@@ -51,22 +51,22 @@ pub fn fit_shadow_ramp(lights: &[ShadedLight], shape: ShadowShape) -> (RampRecip
             let whole: Vec3 = light.truth.iter().sum::<Vec3>() / count;
             let weight = 1.0 / luminance(whole).powi(2).max(1.0e-12);
             let mut sums = vec![0.0; rows * stops];
-            for ((unshaded, at), truth) in light.unshaded.iter().zip(&light.places).zip(&light.truth) {
+            for ((unshaded, at), truth) in light.unshaded.iter().zip(&light.positions).zip(&light.truth) {
                 let mut terms = Vec::with_capacity(4);
                 for (row, of_row) in knots(at.y, rows) {
                     for (stop, of_stop) in knots(at.x, stops) {
-                        terms.push((place(row, stop), of_row * of_stop * unshaded[channel]));
+                        terms.push((position(row, stop), of_row * of_stop * unshaded[channel]));
                     }
                 }
                 equations.add(&terms, Vec3::splat(truth[channel]), weight / count);
-                terms.iter().for_each(|&(place, share)| sums[place] += share / count);
+                terms.iter().for_each(|&(position, fraction)| sums[position] += fraction / count);
             }
             let sums: Vec<_> = sums.into_iter().enumerate().collect();
             equations.add(&sums, Vec3::splat(whole[channel]), BRIGHTNESS * weight);
         }
         let square = equations.mean_square();
         for row in 0..rows {
-            equations.add(&[(place(row, 0), 1.0)], Vec3::ONE, (square * FULL_LIGHT) as f32);
+            equations.add(&[(position(row, 0), 1.0)], Vec3::ONE, (square * FULL_LIGHT) as f32);
         }
         equations.smooth(0, stops, rows, (square * STIFFNESS) as f32);
         equations.solve(STEPS)

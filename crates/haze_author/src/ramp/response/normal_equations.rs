@@ -7,8 +7,8 @@ use glam::Vec3;
 pub(super) fn knots(at: f32, count: usize) -> [(usize, f32); 2] {
     let at = at.clamp(0.0, 1.0) * (count - 1) as f32;
     let low = (at as usize).min(count.saturating_sub(2));
-    let share = at - low as f32;
-    [(low, 1.0 - share), ((low + 1).min(count - 1), share)]
+    let fraction = at - low as f32;
+    [(low, 1.0 - fraction), ((low + 1).min(count - 1), fraction)]
 }
 
 /// Normal equations of three channels with a common matrix.
@@ -39,15 +39,15 @@ impl NormalEquations {
     /// Adds a smoothness term over a table of knots from index `first` on: second differences along and across its rows are
     /// to be 0.
     pub fn smooth(&mut self, first: usize, stops: usize, rows: usize, weight: f32) {
-        let place = |row: usize, stop: usize| first + row * stops + stop;
+        let position = |row: usize, stop: usize| first + row * stops + stop;
         let mut hold = |[before, here, after]: [usize; 3]| {
             self.add(&[(before, 1.0), (here, -2.0), (after, 1.0)], Vec3::ZERO, weight);
         };
         for row in 0..rows {
-            (2..stops).for_each(|stop| hold([2, 1, 0].map(|back| place(row, stop - back))));
+            (2..stops).for_each(|stop| hold([2, 1, 0].map(|back| position(row, stop - back))));
         }
         for stop in 0..stops {
-            (2..rows).for_each(|row| hold([2, 1, 0].map(|back| place(row - back, stop))));
+            (2..rows).for_each(|row| hold([2, 1, 0].map(|back| position(row - back, stop))));
         }
     }
 

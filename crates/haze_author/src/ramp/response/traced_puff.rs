@@ -86,7 +86,7 @@ impl Puff {
             let coverage = traced.coverage.texels[index];
             (coverage > 0.0).then_some(Texel { index, normal, coverage })
         };
-        let texels = recipe.bake_frame(0.0).picture.texels.iter().enumerate().filter_map(texel).collect();
+        let texels = recipe.bake_frame(0.0).image.texels.iter().enumerate().filter_map(texel).collect();
         Ok(Self { lights, texels, traced })
     }
 
@@ -97,30 +97,30 @@ impl Puff {
 
     /// Shades the puff with ramps under a light: linear RGB times coverage.
     pub fn shown(&self, ramps: DiffuseRamps<'_>, light: usize) -> Image<Vec3> {
-        let mut picture = Image::new(self.traced.coverage.size, Vec3::ZERO);
+        let mut image = Image::new(self.traced.coverage.size, Vec3::ZERO);
         for texel in &self.texels {
-            picture.texels[texel.index] = ramps.sample(texel, self.lights[light]) * texel.coverage;
+            image.texels[texel.index] = ramps.sample(texel, self.lights[light]) * texel.coverage;
         }
-        picture
+        image
     }
 
     /// Shades the puff with six-way maps under a light, as [`Puff::shown`]. The maps must be of one frame of the puff's
     /// size.
     pub fn shown_six_way(&self, maps: &BakedSixWay, light: usize) -> Image<Vec3> {
         let size = self.traced.coverage.size;
-        let mut picture = Image::new(size, Vec3::ZERO);
+        let mut image = Image::new(size, Vec3::ZERO);
         for texel in &self.texels {
             let at = UVec2::new(texel.index as u32 % size.x, texel.index as u32 / size.x);
             let half = |y| {
-                let [r, g, b, _] = maps.picture.get_pixel(at.x, y).0.map(|channel| f32::from(channel) / 255.0);
+                let [r, g, b, _] = maps.image.get_pixel(at.x, y).0.map(|channel| f32::from(channel) / 255.0);
                 six_way_from_texel(Vec3::new(r, g, b))
             };
             let positive = half(at.y);
             let negative = half(at.y + size.y);
             let response = six_way_response(positive, negative, self.lights[light], maps.anisotropy);
-            picture.texels[texel.index] = maps.color * (response * texel.coverage);
+            image.texels[texel.index] = maps.color * (response * texel.coverage);
         }
-        picture
+        image
     }
 
     /// Compares shading with ramps to the truth, at the best exposure.
@@ -139,14 +139,14 @@ impl Response {
     /// Compares images to true ones, one per light. The exposure minimises the squared relative errors of brightness
     /// over all lights.
     pub fn new(shown: &[Image<Vec3>], truth: &[Image<Vec3>]) -> Self {
-        let mean = |picture: &Image<Vec3>| luminance(picture.texels.iter().sum()) / picture.texels.len() as f32;
+        let mean = |image: &Image<Vec3>| luminance(image.texels.iter().sum()) / image.texels.len() as f32;
         let both = || shown.iter().zip(truth);
         let lights: Vec<_> =
             both().map(|(shown, truth)| LightResponse { truth: mean(truth), shown: mean(shown) }).collect();
-        let share = |light: &LightResponse| light.shown / light.truth.max(f32::MIN_POSITIVE);
-        let squares: f32 = lights.iter().map(|light| share(light).powi(2)).sum();
-        let exposure = lights.iter().map(share).sum::<f32>() / squares.max(f32::MIN_POSITIVE);
-        let off = lights.iter().map(|light| (exposure * share(light) - 1.0).abs());
+        let fraction = |light: &LightResponse| light.shown / light.truth.max(f32::MIN_POSITIVE);
+        let squares: f32 = lights.iter().map(|light| fraction(light).powi(2)).sum();
+        let exposure = lights.iter().map(fraction).sum::<f32>() / squares.max(f32::MIN_POSITIVE);
+        let off = lights.iter().map(|light| (exposure * fraction(light) - 1.0).abs());
         let error = off.sum::<f32>() / lights.len() as f32;
         let texels = || both().flat_map(|(shown, truth)| shown.texels.iter().zip(&truth.texels));
         let off: f32 = texels().map(|(&shown, &truth)| (shown * exposure - truth).length_squared()).sum();

@@ -10,7 +10,7 @@ use haze_core::formula::saturate;
 #[derive(Clone, Debug)]
 pub struct BakedFrame {
     /// rgb = normal / 2 + 1/2, a = amount.
-    pub picture: Image<Rgba<u8>>,
+    pub image: Image<Rgba<u8>>,
     /// Offset of the visible surface towards the viewer, -1..1 half sides.
     pub offset: Image<f32>,
     /// Means of three more numbers of the voxels over what is visible.
@@ -29,7 +29,7 @@ impl BakedFrame {
     pub(super) fn new(size: u32, texels: &[MarchedTexel]) -> Self {
         let size = UVec2::splat(size);
         Self {
-            picture: Image { size, texels: texels.iter().map(|marched| marched.texel).collect() },
+            image: Image { size, texels: texels.iter().map(|marched| marched.texel).collect() },
             offset: Image { size, texels: texels.iter().map(|marched| marched.offset).collect() },
             carried: Image { size, texels: texels.iter().map(|marched| marched.carried).collect() },
         }
@@ -62,13 +62,13 @@ impl RayAccumulator {
         self.transmittance *= 1.0 - amount;
     }
 
-    /// Returns the texel, and its visible offset towards the viewer in half sides. `place` is the texel's position,
+    /// Returns the texel, and its visible offset towards the viewer in half sides. `position` is the texel's position,
     /// -1..1.
-    pub fn texel(&self, at: UVec2, size: u32, place: Vec2) -> MarchedTexel {
+    pub fn texel(&self, at: UVec2, size: u32, position: Vec2) -> MarchedTexel {
         let border = at.min_element() == 0 || at.max_element() == size - 1;
         let amount = if border { 0.0 } else { 1.0 - self.transmittance };
         // Clear texels get an outward normal, since texture filters blend them in at the edge.
-        let outwards = place.extend(0.5);
+        let outwards = position.extend(0.5);
         let encoded = self.normal.normalize_or(outwards.normalize()) * 0.5 + 0.5;
         let channel = |value: f32| (saturate(value) * 255.0).round() as u8;
         let texel = Rgba([channel(encoded.x), channel(encoded.y), channel(encoded.z), channel(amount)]);

@@ -31,13 +31,13 @@ pub(super) fn balls(recipe: &SpriteRecipe, time: f32) -> Vec<Metaball> {
             let hash = pcg3d(UVec3::new(index, salt, recipe.seed));
             Vec3::new(unit(hash.x), unit(hash.y), unit(hash.z))
         };
-        let place = random(1);
+        let position = random(1);
         let shape = random(2);
-        let z = place.x * 2.0 - 1.0;
-        let xy = cos_sin(place.y * std::f32::consts::TAU) * (1.0 - z * z).sqrt();
-        let distance = recipe.spread * place.z.sqrt();
+        let z = position.x * 2.0 - 1.0;
+        let xy = cos_sin(position.y * std::f32::consts::TAU) * (1.0 - z * z).sqrt();
+        let distance = recipe.spread * position.z.sqrt();
         // Outer balls are smaller: a large body with small puffs on it.
-        let size = shape.x * (1.0 - 0.6 * place.z);
+        let size = shape.x * (1.0 - 0.6 * position.z);
         let radius = recipe.ball_radius_min + (recipe.ball_radius_max - recipe.ball_radius_min) * size;
         let swing = cos_sin(shape.y * std::f32::consts::TAU).rotate(phase) * recipe.drift;
         let any = (random(3) - 0.5).normalize_or(Vec3::Y);

@@ -67,16 +67,16 @@ impl Erosion {
         let sides = self.voxels.sides().as_vec3();
         let at = ((p * Vec3::new(1.0, -1.0, -1.0) + 1.0) * 0.5 * sides - 0.5).clamp(Vec3::ZERO, sides - 1.0);
         let low = at.as_uvec3();
-        let share = at - low.as_vec3();
+        let fraction = at - low.as_vec3();
         let high = (low + 1).min(self.voxels.sides() - 1);
         let values = &self.octaves[0].values;
         let load = |x: u32, y: u32, z: u32| {
             f32::from(values.texels[((z * size + y) * size + x) as usize][0]) * (1.0 / NOISE_SCALE)
         };
-        let mix = |a: f32, b: f32, share: f32| a + (b - a) * share;
-        let row = |y, z| mix(load(low.x, y, z), load(high.x, y, z), share.x);
-        let slice = |z| mix(row(low.y, z), row(high.y, z), share.y);
-        mix(slice(low.z), slice(high.z), share.z)
+        let mix = |a: f32, b: f32, fraction: f32| a + (b - a) * fraction;
+        let row = |y, z| mix(load(low.x, y, z), load(high.x, y, z), fraction.x);
+        let slice = |z| mix(row(low.y, z), row(high.y, z), fraction.y);
+        mix(slice(low.z), slice(high.z), fraction.z)
     }
 }
 

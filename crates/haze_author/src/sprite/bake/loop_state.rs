@@ -17,8 +17,8 @@ pub(super) struct Displacement {
 }
 
 impl Displacement {
-    pub fn lerp(self, other: Self, share: f32) -> Self {
-        Self { flow: self.flow.lerp(other.flow, share), all: self.all.lerp(other.all, share) }
+    pub fn lerp(self, other: Self, fraction: f32) -> Self {
+        Self { flow: self.flow.lerp(other.flow, fraction), all: self.all.lerp(other.all, fraction) }
     }
 }
 
@@ -28,7 +28,7 @@ pub(super) struct VoxelColumn {
     pub x: f32,
     pub node: usize,
     /// Fraction of the way from `node` to the next.
-    pub share: f32,
+    pub fraction: f32,
 }
 
 /// State at one moment.
@@ -66,9 +66,9 @@ impl LoopState {
         let margin = displacements.texels.iter().map(|displacement| displacement.all.length()).fold(0.0, f32::max);
         let column = |index: u32| {
             let x = (index as f32 + 0.5) * (2.0 / recipe.size as f32) - 1.0;
-            let place = (x.min(1.0) + 1.0) * 0.5 * (nodes - 1) as f32;
-            let node = (place as u32).min(nodes - 2);
-            VoxelColumn { x, node: node as usize, share: place - node as f32 }
+            let position = (x.min(1.0) + 1.0) * 0.5 * (nodes - 1) as f32;
+            let node = (position as u32).min(nodes - 2);
+            VoxelColumn { x, node: node as usize, fraction: position - node as f32 }
         };
         let columns = (0..recipe.size).map(column).collect();
         Self { phase, columns, balls_by_box: balls_by_box(voxels, &balls(recipe, time), margin), displacements }
@@ -80,12 +80,12 @@ impl LoopState {
         let nodes = displacements.size.x as i32;
         let at = (p + 1.0) * 0.5 * (nodes - 1) as f32;
         let low = at.floor();
-        let share = at - low;
+        let fraction = at - low;
         let load = |x, y: i32, z: i32| displacements.load(IVec2::new(x, z.min(nodes - 1) * nodes + y.min(nodes - 1)));
         let low = low.as_ivec3();
         let along = |x| {
-            let near = load(x, low.y, low.z).lerp(load(x, low.y + 1, low.z), share.y);
-            near.lerp(load(x, low.y, low.z + 1).lerp(load(x, low.y + 1, low.z + 1), share.y), share.z)
+            let near = load(x, low.y, low.z).lerp(load(x, low.y + 1, low.z), fraction.y);
+            near.lerp(load(x, low.y, low.z + 1).lerp(load(x, low.y + 1, low.z + 1), fraction.y), fraction.z)
         };
         (0..nodes).map(along).collect()
     }

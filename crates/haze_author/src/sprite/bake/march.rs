@@ -65,7 +65,7 @@ fn march(
     let step = 2.0 / depth as f32;
     let mut rays = vec![RayAccumulator::new(); size];
     for z in 0..depth {
-        let place = volume.voxel_center(UVec3::new(0, y, z as u32)).z;
+        let position = volume.voxel_center(UVec3::new(0, y, z as u32)).z;
         let here = row(0, z, 0);
         // Rows above, below, in front and behind, for wide and fine differences.
         let around = [0, 1].map(|index| {
@@ -87,11 +87,11 @@ fn march(
             }
             let amount = 1.0 - fast_exp_neg(density * surface.extinction * step);
             let carried = carried((z * size + y as usize) * size + x);
-            ray.accumulate(amount, slope(x, 0) + slope(x, 1) * surface.bump, place, carried);
+            ray.accumulate(amount, slope(x, 0) + slope(x, 1) * surface.bump, position, carried);
         }
     }
     for ((x, texel), ray) in (0..).zip(line).zip(rays) {
-        let place = volume.voxel_center(UVec3::new(x, y, 0)).truncate();
-        *texel = ray.texel(UVec2::new(x, y), volume.size.x, place);
+        let position = volume.voxel_center(UVec3::new(x, y, 0)).truncate();
+        *texel = ray.texel(UVec2::new(x, y), volume.size.x, position);
     }
 }

@@ -52,7 +52,7 @@ impl SpriteRecipe {
     /// two frames.
     pub fn bake_frame(&self, frame: f32) -> BakedFrame {
         let mut frame = self.frame_baker()(frame);
-        self.sheet().quantise(&mut frame.picture);
+        self.sheet().quantise(&mut frame.image);
         frame
     }
 

@@ -81,8 +81,8 @@ mod tests {
         let recipe = include_str!("../../../../../tests/corpus/sprite/good_first");
         let recipe: SpriteRecipe = json::parse(Path::new("puff.sprite.json"), recipe).unwrap();
         let recipe = SpriteRecipe { size: 64, ..recipe };
-        let baked = recipe.bake_frame(0.0).picture;
-        let shrunk = SpriteRecipe { tolerance: 2, ..recipe }.bake_frame(0.0).picture;
+        let baked = recipe.bake_frame(0.0).image;
+        let shrunk = SpriteRecipe { tolerance: 2, ..recipe }.bake_frame(0.0).image;
         let mut moved = 0;
         for (from, to) in baked.texels.iter().zip(&shrunk.texels) {
             let [r, g, b, a] = [0, 1, 2, 3].map(|channel| u32::from(from.0[channel].abs_diff(to.0[channel])));

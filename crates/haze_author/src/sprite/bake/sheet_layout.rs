@@ -48,7 +48,7 @@ impl Fields for SheetLayout {
 #[derive(Clone, Debug)]
 pub struct BakedSprite {
     /// Flipbook: rgb = normal / 2 + 1/2 (x right, y up, z towards the viewer), a = amount.
-    pub picture: RgbaImage,
+    pub image: RgbaImage,
     /// Detail map (depth and motion), see [`detail`](crate::sprite::detail).
     pub detail: RgbaImage,
 }
@@ -78,15 +78,15 @@ impl SheetLayout {
         frames: &mut [BakedFrame],
         detail: impl Fn(&Sprite, u32, &BakedFrame) -> Image<Rgba<u8>>,
     ) -> BakedSprite {
-        parallel_for_each(frames.iter_mut(), |frame| self.quantise(&mut frame.picture));
-        let pictures = frames.iter().flat_map(|frame| frame.picture.texels.iter().map(|texel| texel.0));
-        let sprite = Sprite::with_levels(self.size, self.frame_count(), pictures.collect());
+        parallel_for_each(frames.iter_mut(), |frame| self.quantise(&mut frame.image));
+        let images = frames.iter().flat_map(|frame| frame.image.texels.iter().map(|texel| texel.0));
+        let sprite = Sprite::with_levels(self.size, self.frame_count(), images.collect());
         let mut details: Vec<_> = (0..).zip(&*frames).map(|(frame, baked)| detail(&sprite, frame, baked)).collect();
         if self.tolerance > 0 {
             details.iter_mut().for_each(|detail| quantise_detail(detail, self.tolerance / 2));
         }
         BakedSprite {
-            picture: self.assemble_sheet(self.size, |frame, at| frames[frame].picture.load(at)),
+            image: self.assemble_sheet(self.size, |frame, at| frames[frame].image.load(at)),
             detail: self.assemble_sheet(detail_size(self.size), |frame, at| details[frame].load(at)),
         }
     }

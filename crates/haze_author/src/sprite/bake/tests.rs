@@ -29,7 +29,7 @@ fn extreme_seeds_bake_without_overflow() {
 fn optional_fields_change_the_image() {
     let plain = SpriteRecipe { size: 32, columns: 2, rows: 1, ..puff() };
     let lines = SpriteRecipe { length: 0.5, ..plain.clone() };
-    let bake = |recipe: &SpriteRecipe| bake(recipe).unwrap().picture;
+    let bake = |recipe: &SpriteRecipe| bake(recipe).unwrap().image;
     for changed in [
         lines.clone(),
         SpriteRecipe { lumps: 0.5, ..plain.clone() },
@@ -70,8 +70,8 @@ fn every_machine_bakes_the_same_bytes() {
     let drawn_out = SpriteRecipe { length: 0.4, upright: 0.5, lumps: 0.7, ..rough.clone() };
     let carried = SpriteRecipe { travel: 0.2, tolerance: 2, ..drawn_out.clone() };
     let found = [small, rough, drawn_out, carried].map(|recipe| {
-        let BakedSprite { picture, detail } = bake(&recipe).unwrap();
-        hash(picture.into_raw().into_iter().chain(detail.into_raw()))
+        let BakedSprite { image, detail } = bake(&recipe).unwrap();
+        hash(image.into_raw().into_iter().chain(detail.into_raw()))
     });
     let expected = [0x6be5_4e10_bf01_e3ae, 0xd573_6a6b_03a6_3766, 0x3093_f633_f0aa_91d5, 0xa174_e057_fb2b_ba2b];
     assert_eq!(found, expected, "{found:#x?}");

@@ -98,8 +98,8 @@ impl<'a> VolumeBaker<'a> {
             let mut px = [0.0; LANES];
             let mut py = [0.0; LANES];
             let mut pz = [0.0; LANES];
-            for (lane, &VoxelColumn { x, node, share }) in columns.iter().enumerate() {
-                let all = displacements[node].all.lerp(displacements[node + 1].all, share);
+            for (lane, &VoxelColumn { x, node, fraction }) in columns.iter().enumerate() {
+                let all = displacements[node].all.lerp(displacements[node + 1].all, fraction);
                 [px[lane], py[lane], pz[lane]] = (middle.with_x(x) + all).to_array();
             }
             for ball in near {
@@ -110,8 +110,8 @@ impl<'a> VolumeBaker<'a> {
             }
             let noise: [f32; LANES] = if recipe.travel > 0.0 {
                 let mut noise = [0.0; LANES];
-                for (noise, &VoxelColumn { x, node, share }) in noise.iter_mut().zip(columns) {
-                    let flow = displacements[node].flow.lerp(displacements[node + 1].flow, share);
+                for (noise, &VoxelColumn { x, node, fraction }) in noise.iter_mut().zip(columns) {
+                    let flow = displacements[node].flow.lerp(displacements[node + 1].flow, fraction);
                     *noise = self.erosion.sample_at(middle.with_x(x) + flow);
                 }
                 noise

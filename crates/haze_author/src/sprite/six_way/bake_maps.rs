@@ -19,7 +19,7 @@ use crate::sprite::bake::{SheetLayout, SpriteRecipe};
 pub struct BakedSixWay {
     /// The sheet, in the layout described in the module's documentation.
     #[serde(with = "image_as_bytes")]
-    pub picture: RgbaImage,
+    pub image: RgbaImage,
     /// Value for `diffuse.intensity` that makes the smoke as bright as the medium relative to white paper.
     pub intensity: f32,
     /// Value for `diffuse.six_way_color`.
@@ -46,7 +46,7 @@ impl SpriteRecipe {
     ) -> Result<BakedSixWay, E> {
         let size = (self.size / 2).max(8);
         let filled = Self { size, extinction: medium.density, ..self.clone() };
-        let frame = |frame: u32| (filled.volume(frame as f32), self.bake_frame(frame as f32).picture);
+        let frame = |frame: u32| (filled.volume(frame as f32), self.bake_frame(frame as f32).image);
         bake_six_way(self.sheet(), medium, samples, frame, progress)
     }
 }
@@ -87,7 +87,7 @@ pub fn bake_six_way<E>(
         })
     });
     let halves: Vec<_> = halves.collect();
-    let picture = RgbaImage::from_fn(sheet.size * sheet.columns, 2 * sheet.size * sheet.rows, |x, y| {
+    let image = RgbaImage::from_fn(sheet.size * sheet.columns, 2 * sheet.size * sheet.rows, |x, y| {
         let row = y / sheet.size;
         let frame = row % sheet.rows * sheet.columns + x / sheet.size;
         let half = &halves[(2 * frame + row / sheet.rows) as usize];
@@ -95,7 +95,7 @@ pub fn bake_six_way<E>(
     });
     let (color, anisotropy) = mix.map_or((Vec3::ONE, 0.0), |mix| (mix.color, mix.anisotropy));
     let brightest = color.max_element();
-    Ok(BakedSixWay { picture, intensity: white * brightest, color: color / brightest, anisotropy })
+    Ok(BakedSixWay { image, intensity: white * brightest, color: color / brightest, anisotropy })
 }
 
 /// Returns the light to store as white: all visible texels except the fraction [`CLIPPED_FRACTION`] are darker.
@@ -121,15 +121,15 @@ fn upsample_along_normals(traced: &TracedSixWay, shape: &Image<Rgba<u8>>) -> Ima
     let normals = coarse_normals(shape, coarse);
     let mut light = Image::new(fine, SixWay::default());
     light.for_each(|at, texel| {
-        let place = (at.as_vec2() + 0.5) * coarse.as_vec2() / fine.as_vec2() - 0.5;
-        let middle = place.round().as_ivec2();
+        let position = (at.as_vec2() + 0.5) * coarse.as_vec2() / fine.as_vec2() - 0.5;
+        let middle = position.round().as_ivec2();
         let normal = normal_of(shape.load(at.as_ivec2()));
         let mut sum = SixWay::default();
         let mut weights = 0.0;
         for y in -REACH..=REACH {
             for x in -REACH..=REACH {
                 let tap = (middle + IVec2::new(x, y)).clamp(IVec2::ZERO, coarse.as_ivec2() - 1);
-                let distance = (tap.as_vec2() - place).length_squared();
+                let distance = (tap.as_vec2() - position).length_squared();
                 let slope = (normals.load(tap) - normal).length_squared() / (SLOPE * SLOPE);
                 let weight = exp(-0.5 * (distance + slope)) * traced.coverage.load(tap).max(1.0e-6);
                 let SixWay { positive, negative } = traced.light.load(tap);

@@ -49,9 +49,10 @@ impl TracedSixWay {
             let index = (at.y * traced.coverage.size.x + at.x) as usize;
             let coverage = traced.coverage.texels[index].max(1.0e-3);
             let seen = |light: usize| f64::from(luminance(traced.light[light].texels[index]) / coverage);
-            let side =
-                |shares: &Vec<f64>| shares.iter().enumerate().map(|(light, share)| share * seen(light)).sum::<f64>();
-            let [px, py, pz, nx, ny, nz] = mix.sides.each_ref().map(|shares| side(shares).max(0.0) as f32);
+            let side = |fractions: &Vec<f64>| {
+                fractions.iter().enumerate().map(|(light, fraction)| fraction * seen(light)).sum::<f64>()
+            };
+            let [px, py, pz, nx, ny, nz] = mix.sides.each_ref().map(|fractions| side(fractions).max(0.0) as f32);
             *texel = SixWay { positive: Vec3::new(px, py, pz), negative: Vec3::new(nx, ny, nz) };
         });
         Ok(Self { light, coverage: traced.coverage, mix })
@@ -106,8 +107,8 @@ impl SixWayFit {
     fn new(lights: &[Vec3], brightness: &[f64], anisotropy: f32) -> Self {
         let terms = |way: &Vec3| {
             let mut terms = [0.0; 6];
-            for (axis, share) in six_way_axis_weights(*way, anisotropy).to_array().into_iter().enumerate() {
-                terms[axis + 3 * usize::from(way[axis] <= 0.0)] = f64::from(share);
+            for (axis, fraction) in six_way_axis_weights(*way, anisotropy).to_array().into_iter().enumerate() {
+                terms[axis + 3 * usize::from(way[axis] <= 0.0)] = f64::from(fraction);
             }
             terms
         };
@@ -124,7 +125,7 @@ impl SixWayFit {
         let sides = solve(rows, right);
         let of_sides = sides.each_ref().map(|side| side.iter().zip(brightness).map(|(a, b)| a * b).sum::<f64>());
         let error = |(way, brightness): (&Vec3, &f64)| {
-            let shown: f64 = terms(way).iter().zip(of_sides).map(|(share, side)| share * side.max(0.0)).sum();
+            let shown: f64 = terms(way).iter().zip(of_sides).map(|(fraction, side)| fraction * side.max(0.0)).sum();
             (shown / brightness - 1.0).powi(2)
         };
         let error = lights.iter().zip(brightness).map(error).sum();

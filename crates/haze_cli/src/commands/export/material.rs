@@ -49,9 +49,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
         return Err(FieldError::new("PRESET", path.display(), "a preset with a system").into());
     };
     let export = MaterialExport::new(&preset.name, index, system, images, *engine)?;
-    let pictures = image_paths(&folders, &preset);
+    let images = image_paths(&folders, &preset);
     let _made = OutputFolder::make("--output", output)?;
-    let mut files = FileChecks::for_inputs(pictures.iter().map(PathBuf::as_path).chain([path.as_path()]));
+    let mut files = FileChecks::for_inputs(images.iter().map(PathBuf::as_path).chain([path.as_path()]));
     for name in export.files() {
         let file = output.join(name);
         let extension = file.extension().and_then(|extension| extension.to_str()).unwrap_or_default();

@@ -22,7 +22,7 @@ pub struct Arguments {
     /// Name of a layer: `haze preset layers` lists them.
     layer: String,
     /// Place of the layer, metres: where it would otherwise have the origin.
-    #[arg(long, value_name = "X,Y,Z", value_parser = parse_place, allow_hyphen_values = true)]
+    #[arg(long, value_name = "X,Y,Z", value_parser = parse_position, allow_hyphen_values = true)]
     at: Option<Vec3>,
     /// File to write; the images that the preset uses are copied beside it. Default: the preset's own file.
     #[arg(short, long, value_name = "FILE.json")]
@@ -54,10 +54,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
 }
 
 /// Parses `X,Y,Z`, metres.
-fn parse_place(text: &str) -> Result<Vec3, String> {
+fn parse_position(text: &str) -> Result<Vec3, String> {
     let numbers: Option<Vec<f32>> = text.split(',').map(|number| number.trim().parse().ok()).collect();
-    let place = numbers.and_then(|numbers| <[f32; 3]>::try_from(numbers).ok()).map(Vec3::from);
-    place
-        .filter(|place| place.is_finite())
+    let position = numbers.and_then(|numbers| <[f32; 3]>::try_from(numbers).ok()).map(Vec3::from);
+    position
+        .filter(|position| position.is_finite())
         .ok_or_else(|| format!("{text:?} is not a place; expected X,Y,Z in metres, for example 1,0,-2.5"))
 }

@@ -27,9 +27,9 @@ fn write_ramps(ramps: &BTreeMap<String, RampRecipe>, folder: &Path) -> Result<()
         return Err(FieldError::from_problem("FILE", problem, "a folder without the ramps of the link").into());
     }
     for (name, recipe) in ramps {
-        let [picture, file] = files(name);
+        let [image, file] = files(name);
         write_file(&file, recipe.to_json().as_bytes())?;
-        write_baked_png(&picture, &recipe.bake()?)?;
+        write_baked_png(&image, &recipe.bake()?)?;
     }
     Ok(())
 }

@@ -64,10 +64,10 @@ fn print_truth_error(ramps: &[PathBuf], medium: &str, backlight: Option<&Path>) 
 
 /// Returns the commands that replace a PNG of visible steps by a smooth one.
 fn import_and_bake(path: &Path) -> String {
-    let picture = one_line(path.display());
+    let image = one_line(path.display());
     let recipe = path.with_extension("ramp.json");
     let recipe = one_line(recipe.display());
-    format!("`haze ramp import {picture} -o {recipe}`, then `haze ramp bake --overwrite {recipe}`")
+    format!("`haze ramp import {image} -o {recipe}`, then `haze ramp bake --overwrite {recipe}`")
 }
 
 fn findings(path: &Path, role: Option<RampRole>) -> Result<Vec<Finding>, Error> {
@@ -81,8 +81,8 @@ fn findings(path: &Path, role: Option<RampRole>) -> Result<Vec<Finding>, Error> 
         findings.extend(notes.into_iter().map(found));
     }
     match load_ramp_image(path) {
-        Ok((picture, recipe)) => {
-            findings.extend(lint_ramp(&picture, role));
+        Ok((image, recipe)) => {
+            findings.extend(lint_ramp(&image, role));
             let cure = if recipe.is_some() { "set bits to 16 in the recipe".into() } else { import_and_bake(path) };
             let banding = findings.iter_mut().filter(|finding| finding.name == BANDING);
             banding.for_each(|finding| finding.description += &format!(": {cure}"));

@@ -18,7 +18,7 @@ use super::ramp_io::{check_recipe_output, write_recipe};
 use crate::bake_job::{PaintedPng, check_not_painted};
 use crate::medium_options::PuffArguments;
 
-/// Number of clouds that the ramp is fitted to: four of each shape, at other random places.
+/// Number of clouds that the ramp is fitted to: four of each shape, at other random positions.
 const CLOUDS: usize = 12;
 
 #[derive(Args)]

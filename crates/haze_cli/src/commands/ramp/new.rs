@@ -93,8 +93,8 @@ fn write_blank(output: &Path, role: RampRole) -> Result<(), Error> {
         };
         labels.extend([(180.0, 8.0, top), (180.0, size.y as f32 - TEXT_HEIGHT - 12.0, bottom)]);
     }
-    let picture = labelled(&ramp, size, role, &labels);
-    write_png(output, &picture, CompressionEffort::Small)?;
+    let image = labelled(&ramp, size, role, &labels);
+    write_png(output, &image, CompressionEffort::Small)?;
     print_line!("{}: a {} ramp to paint over, {}x{}", output.display(), role.name(), size.x, size.y)
 }
 
@@ -119,8 +119,8 @@ fn labelled(ramp: &Ramp, size: UVec2, role: RampRole, labels: &[(f32, f32, &str)
         }))
     };
     let strengths = std::iter::successors(Some(1.0), |strength| Some(strength * FAINTER));
-    let mut pictures = strengths.take_while(|strength| *strength > 0.05).map(draw);
-    pictures.find(|picture| lint_ramp(picture, Some(role)).is_empty()).unwrap_or_else(|| draw(0.0))
+    let mut images = strengths.take_while(|strength| *strength > 0.05).map(draw);
+    images.find(|image| lint_ramp(image, Some(role)).is_empty()).unwrap_or_else(|| draw(0.0))
 }
 
 /// Returns the sRGB code at `u` and `v`, both 0 to 1, interpolated between texels.
@@ -129,10 +129,10 @@ fn interpolated_code(ramp: &Ramp, u: f32, v: f32) -> Vec3 {
     let steps = (size - 1).as_vec2().max(Vec2::ONE);
     let at = Vec2::new(u, v) * steps;
     let low = at.floor();
-    let share = at.fract();
+    let fraction = at.fract();
     let code = |x: f32, y: f32| srgb_code_at(ramp, ((low.x + x) / steps.x).min(1.0), ((low.y + y) / steps.y).min(1.0));
-    let row = |y: f32| code(0.0, y).lerp(code(1.0, y), share.x);
-    row(0.0).lerp(row(1.0), share.y)
+    let row = |y: f32| code(0.0, y).lerp(code(1.0, y), fraction.x);
+    row(0.0).lerp(row(1.0), fraction.y)
 }
 
 /// Returns the coverage of white text, blurred by a Gaussian first along rows, then along columns.
@@ -157,5 +157,5 @@ fn blurred(text: &RgbImage) -> Vec<f32> {
     let coverage: Vec<f32> = text.pixels().map(|pixel| f32::from(pixel.0[0]) / 255.0).collect();
     let rows = along(&coverage, 1, width, &|index| index % width.max(1));
     let columns = along(&rows, width, height, &|index| index / width.max(1));
-    columns.into_iter().map(|share| 1.0 - (-TEXT_GAIN * share).exp()).collect()
+    columns.into_iter().map(|fraction| 1.0 - (-TEXT_GAIN * fraction).exp()).collect()
 }

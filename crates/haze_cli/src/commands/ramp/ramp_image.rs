@@ -8,7 +8,7 @@ use image::{Rgb, RgbImage};
 
 /// Returns the sRGB code, 0 to 1, of the texel nearest to `u` and `v`, both 0 to 1.
 pub fn srgb_code_at(ramp: &Ramp, u: f32, v: f32) -> Vec3 {
-    let at = |share: f32, count: u32| (share * (count - 1) as f32).round() as u32;
+    let at = |fraction: f32, count: u32| (fraction * (count - 1) as f32).round() as u32;
     let size = ramp.dimensions();
     ramp.texel(UVec2::new(at(u, size.x), at(v, size.y))).map(srgb_from_linear)
 }

@@ -84,7 +84,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failures> {
         sheet.inset(index, &ramp_image(ramp, inset));
     }
     sheet.add_footer(&format!("{}, {}x{}, {}", base.preset.name, size.x, size.y, backend.description()));
-    arguments.shot.write(sheet.picture, &base, &backend)?;
+    arguments.shot.write(sheet.image, &base, &backend)?;
     // Ramps that were left out have been reported.
     if left_out.errors().is_empty() { Ok(()) } else { Err(Failures::default()) }
 }
@@ -168,7 +168,7 @@ fn apply_ramp(shot: &mut Shot, role: RampRole, ramp: &Ramp) {
             fire_ramp,
             ..
         } = material;
-        let place = match role {
+        let position = match role {
             RampRole::Diffuse => {
                 if settings.diffuse.mode == DiffuseMode::PaintedMotif {
                     settings.diffuse.mode = DiffuseMode::Ramp;
@@ -207,6 +207,6 @@ fn apply_ramp(shot: &mut Shot, role: RampRole, ramp: &Ramp) {
                 age_ramp
             }
         };
-        *place = ramp.clone();
+        *position = ramp.clone();
     }
 }

@@ -42,8 +42,8 @@ pub fn run(Arguments { ramp: path, output }: &Arguments) -> Result<(), Error> {
     if let Some(output) = output {
         FileChecks::for_inputs([path]).check_output("--output", output, "png")?;
     }
-    let (picture, recipe) = load_ramp_image(path)?;
-    let ramp = Ramp::from_image(&picture);
+    let (image, recipe) = load_ramp_image(path)?;
+    let ramp = Ramp::from_image(&image);
     let size = ramp.size();
     if let Some(output) = output {
         write_png(output, &ramp_with_curves(&ramp).into(), CompressionEffort::Quick)?;
@@ -128,8 +128,8 @@ fn ramp_with_curves(ramp: &Ramp) -> RgbImage {
     let below = plot(SIZE + UVec2::new((LEFT + RIGHT) as u32, 60), 0.0, 1.0, axis, &curves);
     let up = if ramp.size().y > 1 { SIZE.y } else { SIZE.y / 4 };
     let strip = ramp_image(ramp, UVec2::new(SIZE.x, up));
-    let mut picture = RgbImage::from_pixel(below.width(), up + below.height() + 16, BACKGROUND);
-    imageops::replace(&mut picture, &strip, LEFT as i64, 16);
-    imageops::replace(&mut picture, &below, 0, i64::from(up) + 16);
-    picture
+    let mut image = RgbImage::from_pixel(below.width(), up + below.height() + 16, BACKGROUND);
+    imageops::replace(&mut image, &strip, LEFT as i64, 16);
+    imageops::replace(&mut image, &below, 0, i64::from(up) + 16);
+    image
 }

@@ -78,10 +78,10 @@ fn watched_recipes(recipes: &[PathBuf]) -> BTreeSet<PathBuf> {
     files
 }
 
-fn is_newer(picture: &Path, recipe: &Path) -> bool {
-    // A folder in place of the image counts as older, so that baking reports that it cannot be replaced.
+fn is_newer(image: &Path, recipe: &Path) -> bool {
+    // A folder instead of the image counts as older, so that baking reports that it cannot be replaced.
     let modified = |path: &Path| fs::metadata(path).ok().filter(fs::Metadata::is_file)?.modified().ok();
-    modified(picture).is_some_and(|picture| modified(recipe) <= Some(picture))
+    modified(image).is_some_and(|image| modified(recipe) <= Some(image))
 }
 
 fn bake(path: &Path) -> Result<(), Error> {

@@ -36,7 +36,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failures> {
 }
 
 fn findings(path: &Path, Arguments { columns, rows, y_down, .. }: &Arguments) -> Result<Vec<Finding>, Error> {
-    let picture = read_png(path).map_err(|error| explain_wrong_kind(error.into(), path, "image", "a PNG"))?.to_rgba8();
+    let image = read_png(path).map_err(|error| explain_wrong_kind(error.into(), path, "image", "a PNG"))?.to_rgba8();
     let recipe = path.with_extension("sprite.json");
     let beside = if (columns, rows) == (&None, &None) && recipe.is_file() {
         SpriteRecipe::load(&recipe)?.layout()
@@ -45,5 +45,5 @@ fn findings(path: &Path, Arguments { columns, rows, y_down, .. }: &Arguments) ->
     };
     let layout =
         SpriteLayout { columns: columns.unwrap_or(beside.columns), rows: rows.unwrap_or(beside.rows), y_down: *y_down };
-    Ok(lint_sprite(path, &picture, layout)?)
+    Ok(lint_sprite(path, &image, layout)?)
 }

@@ -62,23 +62,23 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
         return Err(FieldError::from_problem("--columns and --rows", problem, expected).into());
     }
     let files = by_number(files);
-    let pictures = files.iter().map(|&path| Ok((path, read_png(path)?.to_rgba8())));
-    let pictures = pictures.collect::<Result<Vec<_>, Error>>()?;
+    let images = files.iter().map(|&path| Ok((path, read_png(path)?.to_rgba8())));
+    let images = images.collect::<Result<Vec<_>, Error>>()?;
     let path = files.first().copied().unwrap_or(Path::new(""));
-    let (sheets, grid) = if pictures.len() > 1 && !source.needs_two_images() {
-        let (sheet, grid) = arrange_sheet(&pictures)?;
+    let (sheets, grid) = if images.len() > 1 && !source.needs_two_images() {
+        let (sheet, grid) = arrange_sheet(&images)?;
         (vec![sheet], grid)
     } else {
-        (pictures.into_iter().map(|(_, picture)| picture).collect(), UVec2::new(*columns, *rows))
+        (images.into_iter().map(|(_, image)| image).collect(), UVec2::new(*columns, *rows))
     };
     let layout = SpriteLayout { columns: grid.x, rows: grid.y, y_down: false };
-    let ImportedSprite { picture, six_way, y_direction, emission, not_normals, border } =
+    let ImportedSprite { image, six_way, y_direction, emission, not_normals, border } =
         import_sprite(path, &sheets, *source, layout, *y_down, *strength)?;
-    let findings = lint_sprite(output, &picture, layout)?;
+    let findings = lint_sprite(output, &image, layout)?;
     if let Some(reason) = refusal(*source, not_normals, &findings) {
         return Err(Error::from(AssetError::Image { path: path.into(), reason }));
     }
-    write_png(output, &picture.into(), CompressionEffort::Small)?;
+    write_png(output, &image.into(), CompressionEffort::Small)?;
     print_line!("{}: {}x{} frames", output.display(), grid.x, grid.y)?;
     if let Some(maps) = six_way {
         let path = six_way_path(output);

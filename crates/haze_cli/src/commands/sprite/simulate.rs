@@ -45,7 +45,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failures> {
 struct Job<'a> {
     path: &'a Path,
     recipe: SimRecipe,
-    picture: PathBuf,
+    image: PathBuf,
     outputs: Vec<PathBuf>,
     painted: PaintedPng,
 }
@@ -62,21 +62,21 @@ impl<'a> Job<'a> {
             return Err(FieldError::new("recipe", path.display(), "a *.sim.json file").into());
         }
         let recipe = SimRecipe::load(path)?;
-        let mut picture = image_path(path);
+        let mut image = image_path(path);
         if preview {
-            let name = picture.file_stem().unwrap_or_default().to_string_lossy();
-            picture = picture.with_file_name(format!("{name}_preview.png"));
+            let name = image.file_stem().unwrap_or_default().to_string_lossy();
+            image = image.with_file_name(format!("{name}_preview.png"));
         }
         let recipe = if preview { recipe.preview() } else { recipe };
-        let mut outputs = vec![picture.clone(), picture.with_extension("detail.png")];
+        let mut outputs = vec![image.clone(), image.with_extension("detail.png")];
         if recipe.burns() {
-            outputs.push(picture.with_extension("heat.png"));
+            outputs.push(image.with_extension("heat.png"));
         }
-        for output in outputs.iter().chain(&six_way.output(&picture)) {
+        for output in outputs.iter().chain(&six_way.output(&image)) {
             files.check_output("output", output, "png")?;
             check_not_painted(output, painted)?;
         }
-        Ok(Self { path, recipe, picture, outputs, painted })
+        Ok(Self { path, recipe, image, outputs, painted })
     }
 
     /// Simulates, and writes the images with a line for each.
@@ -85,13 +85,13 @@ impl<'a> Job<'a> {
         let baked = with_progress(format!("haze: baking {}", self.path.display()), || simulation.bake());
         // A PNG may have been painted during a long simulation.
         self.outputs.iter().try_for_each(|output| check_not_painted(output, self.painted))?;
-        let images = [DynamicImage::from(baked.sprite.picture), baked.sprite.detail.into()];
+        let images = [DynamicImage::from(baked.sprite.image), baked.sprite.detail.into()];
         for (image, output) in images.iter().chain(&baked.heat.map(DynamicImage::from)).zip(&self.outputs) {
             with_progress(format!("haze: writing {}", output.display()), || write_baked_png(output, image))?;
             print_line!("{}: {}x{}", output.display(), image.width(), image.height())?;
         }
         let frames = self.recipe.sheet.frame_count();
-        six_way.bake(self.path, &self.picture, frames, |medium, samples, progress| {
+        six_way.bake(self.path, &self.image, frames, |medium, samples, progress| {
             simulation.bake_six_way(medium, samples, progress)
         })
     }

@@ -40,7 +40,7 @@ impl SixWayArguments {
     pub fn check(&self, recipes: &[PathBuf], painted: PaintedPng) -> Result<(), Error> {
         self.check_options()?;
         let mut files = FileChecks::for_inputs(recipes);
-        sprites(recipes).map(image_path).filter_map(|picture| self.output(&picture)).try_for_each(|output| {
+        sprites(recipes).map(image_path).filter_map(|image| self.output(&image)).try_for_each(|output| {
             files.check_output("output", &output, "png")?;
             check_not_painted(&output, painted)
         })
@@ -62,8 +62,8 @@ impl SixWayArguments {
     }
 
     /// Returns the file of the maps of a sprite, if they were asked for.
-    pub fn output(&self, picture: &Path) -> Option<PathBuf> {
-        self.six_way.is_some().then(|| six_way_path(picture))
+    pub fn output(&self, image: &Path) -> Option<PathBuf> {
+        self.six_way.is_some().then(|| six_way_path(image))
     }
 
     /// Returns the recipes that are baked without light: with --six-way all but built-in sprites, which have no file.
@@ -88,7 +88,7 @@ impl SixWayArguments {
         })
     }
 
-    /// Bakes the maps of one sprite of `frames` frames, if they were asked for. `path` is its recipe, and `picture` its
+    /// Bakes the maps of one sprite of `frames` frames, if they were asked for. `path` is its recipe, and `image` its
     /// flipbook. `bake` gets the medium, the paths per pixel, and a function to call with the frame and the number of
     /// finished paths.
     ///
@@ -97,7 +97,7 @@ impl SixWayArguments {
     pub fn bake(
         &self,
         path: &Path,
-        picture: &Path,
+        image: &Path,
         frames: u32,
         bake: impl FnOnce(&Medium, u32, &dyn Fn(u32, u32) -> Result<(), Error>) -> Result<BakedSixWay, Error>,
     ) -> Result<(), Error> {
@@ -115,8 +115,8 @@ impl SixWayArguments {
                 Ok(())
             })
         })?;
-        let BakedSixWay { picture: maps, intensity, color, anisotropy } = baked;
-        let output = six_way_path(picture);
+        let BakedSixWay { image: maps, intensity, color, anisotropy } = baked;
+        let output = six_way_path(image);
         print_line!("{}: {}x{}", output.display(), maps.width(), maps.height())?;
         write_baked_png(&output, &maps.into())?;
         print_line!(

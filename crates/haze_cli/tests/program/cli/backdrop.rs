@@ -14,25 +14,25 @@ fn a_scene_and_a_sky_are_rendered_from_any_folder() {
     let court = example("court.glb");
     let dusk = example("dusk.hdr");
     let [court, dusk] = [&court, &dusk].map(|path| path.to_str().unwrap());
-    let picture = |more: &[&str]| {
+    let rendered = |more: &[&str]| {
         let arguments = [&["render", "--size", "48x27", "--backend", "cpu", "-o", "out.png"], more].concat();
         let output = haze(folder.path(), &arguments);
         assert!(output.status.success(), "{more:?}: {}", stderr(&output));
         haze_core::assets::image::read_png(&folder.path().join("out.png")).unwrap()
     };
     let images = [
-        picture(&[]),
-        picture(&["--scene", court]),
-        picture(&["--scene", court, "--sky", dusk]),
-        picture(&["--scene", court, "--sky", dusk, "--scene-camera"]),
-        picture(&["--scene", court, "--sky", dusk, "--scene-camera", "--scene-lights"]),
-        picture(&["--scene", court, "--sky", dusk, "--set", "environment.sky_rotation=90"]),
+        rendered(&[]),
+        rendered(&["--scene", court]),
+        rendered(&["--scene", court, "--sky", dusk]),
+        rendered(&["--scene", court, "--sky", dusk, "--scene-camera"]),
+        rendered(&["--scene", court, "--sky", dusk, "--scene-camera", "--scene-lights"]),
+        rendered(&["--scene", court, "--sky", dusk, "--set", "environment.sky_rotation=90"]),
     ];
     for (index, image) in images.iter().enumerate() {
         assert!(!images[..index].contains(image), "image {index} is one of those before");
     }
     // Smoke alone does not show them.
-    assert!(picture(&["--scene", court, "--transparent"]) == picture(&["--transparent"]));
+    assert!(rendered(&["--scene", court, "--transparent"]) == rendered(&["--transparent"]));
     let refused = |more: &[&str]| {
         refusal(folder.path(), &[&["render", "--size", "16x16", "--backend", "cpu", "-o", "out.png"], more].concat())
     };
@@ -86,13 +86,13 @@ fn set_is_the_last_word_on_what_files_replace() {
         assert!(output.status.success(), "{more:?}: {said}");
         (haze_core::assets::image::read_png(&folder.path().join("out.png")).unwrap(), said)
     };
-    let picture = |more: &[&str]| {
+    let rendered = |more: &[&str]| {
         let (image, said) = render(more);
         assert!(!said.contains("has no effect"), "{more:?}: {said}");
         image
     };
     let scene = ["--scene", "view.gltf"];
-    let with = |more: &[&str]| picture(&[&scene, more].concat());
+    let with = |more: &[&str]| rendered(&[&scene, more].concat());
     let first = with(&["--scene-camera"]);
     assert!(with(&["--scene-camera", "front"]) == first);
     let near = with(&["--scene-camera", "near"]);
@@ -118,8 +118,8 @@ fn set_is_the_last_word_on_what_files_replace() {
     assert!(line.contains(expected), "{line}");
 
     // A sky from Blender.
-    let turned = picture(&["--sky", dusk, "--set", "environment.sky_rotation=90"]);
-    assert!(turned != picture(&["--sky", dusk]) && turned == picture(&["--sky", dusk, "--sky-from-blender"]));
+    let turned = rendered(&["--sky", dusk, "--set", "environment.sky_rotation=90"]);
+    assert!(turned != rendered(&["--sky", dusk]) && turned == rendered(&["--sky", dusk, "--sky-from-blender"]));
     let (beside, said) = render(&["--scene", "view.gltf", "--sky", dusk]);
     assert!(said.contains("dusk.hdr: turned by 90 degrees, as the world of a scene from Blender"), "{said}");
     let asked = render(&["--scene", "view.gltf", "--sky", dusk, "--set", "sky_rotation=90"]);

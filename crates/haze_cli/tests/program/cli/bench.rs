@@ -248,7 +248,7 @@ fn runs_are_compared_row_by_row() {
     let said = compare(&[]).2;
     assert!(said.contains("one measures upsample, the other scale; expected runs with a suite in common"), "{said}");
 
-    // An invalid report is refused with the place of the error.
+    // An invalid report is refused with the position of the error.
     fs::write(folder.path().join("after.json"), "{\"version\": 1, \"rows\": [}").unwrap();
     let text = refusal(folder.path(), &["bench", "compare", "run.json", "after.json"]);
     assert!(text.contains("after.json:1:"), "{text}");

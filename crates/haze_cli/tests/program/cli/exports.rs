@@ -128,12 +128,12 @@ fn interrupted_flipbooks_leave_no_folder() {
 #[test]
 fn pixels_of_images_are_as_asked_for() {
     let folder = folder();
-    let picture = |arguments: &[&str]| {
+    let rendered = |arguments: &[&str]| {
         let output = render(folder.path(), arguments);
         assert!(output.status.success(), "{arguments:?}: {}", stderr(&output));
         haze_core::assets::image::read_png(&folder.path().join("out.png")).unwrap()
     };
-    let color = |arguments: &[&str]| picture(arguments).color();
+    let color = |arguments: &[&str]| rendered(arguments).color();
     let empty = "environment.scene=empty";
     assert_eq!(color(&[]), image::ColorType::Rgb8);
     assert_eq!(color(&["--bits", "16"]), image::ColorType::Rgb16);
@@ -141,7 +141,7 @@ fn pixels_of_images_are_as_asked_for() {
     assert_eq!(color(&["--set", empty]), image::ColorType::Rgba8);
     assert_eq!(color(&["--set", empty, "--background", "scene"]), image::ColorType::Rgb8);
     assert_eq!(color(&["--set", empty, "--view", "normals"]), image::ColorType::Rgb8);
-    assert_ne!(picture(&["--transparent"]), picture(&["--transparent", "--alpha", "premultiplied"]));
+    assert_ne!(rendered(&["--transparent"]), rendered(&["--transparent", "--alpha", "premultiplied"]));
     let small = ["render", "--size", "16x16", "--backend", "cpu"];
     let line = |more: &[&str]| refusal(folder.path(), &[&small[..], more].concat());
     let said = line(&["--bits", "16", "-o", "a.exr"]);

@@ -9,16 +9,16 @@ const SMALL: [&str; 7] = ["render", "fence", "--size", "32x18", "--backend", "cp
 #[test]
 fn a_field_is_set_by_its_name() {
     let folder = folder();
-    let picture = |arguments: &[&str]| {
+    let rendered = |arguments: &[&str]| {
         let output = render(folder.path(), arguments);
         assert!(output.status.success(), "{}", stderr(&output));
         fs::read(folder.path().join("out.png")).unwrap()
     };
     // The same field by its option, by the end of its path, and by its whole path.
-    let scale = picture(&["--scale", "4"]);
-    assert_eq!(scale, picture(&["--set", "accumulate.downscale=4"]));
-    assert_eq!(scale, picture(&["--set", "systems[0].settings.accumulate.downscale=4"]));
-    assert_ne!(scale, picture(&["--set", "accumulate.downscale=4", "--set", "scatter_color=1,0,0"]));
+    let scale = rendered(&["--scale", "4"]);
+    assert_eq!(scale, rendered(&["--set", "accumulate.downscale=4"]));
+    assert_eq!(scale, rendered(&["--set", "systems[0].settings.accumulate.downscale=4"]));
+    assert_ne!(scale, rendered(&["--set", "accumulate.downscale=4", "--set", "scatter_color=1,0,0"]));
 }
 
 #[test]
@@ -54,8 +54,8 @@ fn a_sheet_has_one_image_per_value() {
         haze_core::assets::image::read_png(&folder.path().join("sheet.png")).unwrap().to_rgb8()
     };
     // Two images per row, the last cell empty.
-    let picture = sheet("accumulate.downscale=1,4,16");
-    let cell = |x: u32, y: u32| image::imageops::crop_imm(&picture, 12 + x * 60, 40 + y * 67, 48, 27).to_image();
+    let image = sheet("accumulate.downscale=1,4,16");
+    let cell = |x: u32, y: u32| image::imageops::crop_imm(&image, 12 + x * 60, 40 + y * 67, 48, 27).to_image();
     let cells = [cell(0, 0), cell(1, 0), cell(0, 1), cell(1, 1)];
     for (i, a) in cells.iter().enumerate() {
         assert!(cells[..i].iter().all(|b| a != b), "{i}");
@@ -83,9 +83,9 @@ fn each_frame_is_written_to_its_own_file() {
     // The same frames on one sheet, row by row.
     run(&["flipbook.png", "--frames", "9..11", "--rate", "2", "--time", "4", "--sheet", "2x2"]);
     assert_eq!(size_of(&folder.path().join("flipbook.png")), (64, 36));
-    let picture = |name: &str| haze_core::assets::image::read_png(&folder.path().join(name)).unwrap().to_rgb8();
-    let flipbook = picture("flipbook.png");
-    assert_eq!(image::imageops::crop_imm(&flipbook, 0, 18, 32, 18).to_image(), picture("f_011.png"));
+    let rendered = |name: &str| haze_core::assets::image::read_png(&folder.path().join(name)).unwrap().to_rgb8();
+    let flipbook = rendered("flipbook.png");
+    assert_eq!(image::imageops::crop_imm(&flipbook, 0, 18, 32, 18).to_image(), rendered("f_011.png"));
 
     let line = |arguments: &[&str]| refusal(folder.path(), &[&SMALL[..], arguments].concat());
     assert!(line(&["f.png", "--frames", "0..3"]).contains("expected a name with one place for the frame number"));
@@ -111,15 +111,15 @@ fn smoke_is_written_alone() {
         let output = haze(folder.path(), &[&SMALL[..], arguments, &["--transparent"]].concat());
         assert!(output.status.success(), "{}", stderr(&output));
     };
-    let picture = |name: &str| haze_core::assets::image::read_png(&folder.path().join(name)).unwrap();
+    let rendered = |name: &str| haze_core::assets::image::read_png(&folder.path().join(name)).unwrap();
     run(&["one.png", "--time", "9"]);
-    let one = picture("one.png");
+    let one = rendered("one.png");
     assert!(one.color().has_alpha());
     let one = one.to_rgba8();
     let opacities = || one.pixels().map(|pixel| pixel.0[3]);
     assert!(opacities().min() == Some(0) && opacities().max() > Some(200));
     run(&["flipbook.png", "--time", "9", "--frames", "0..1", "--sheet", "1x2"]);
-    let flipbook = picture("flipbook.png").to_rgba8();
+    let flipbook = rendered("flipbook.png").to_rgba8();
     assert_eq!(image::imageops::crop_imm(&flipbook, 0, 0, 32, 18).to_image(), one);
     run(&["f_%d.exr", "--frames", "0..1"]);
     let bytes = ["f_0.exr", "f_1.exr"].map(|name| fs::read(folder.path().join(name)).unwrap());

@@ -34,11 +34,11 @@ fn control_characters_in_names_are_escaped() {
         assert!(line.contains(escaped) && !line.trim_end().contains(char::is_control), "{line:?}");
     }
     assert!(refusal(folder.path(), &["render", "-o", "a.png", "--size", name]).contains("1 to 8192"));
-    let picture = format!("{name}.png");
-    let output = haze(folder.path(), &["render", "--size", "8x8", "--backend", "cpu", "-o", &picture]);
+    let image = format!("{name}.png");
+    let output = haze(folder.path(), &["render", "--size", "8x8", "--backend", "cpu", "-o", &image]);
     let line = String::from_utf8(output.stdout).unwrap();
     assert!(line.starts_with(escaped) && line.lines().count() == 1, "{line:?}");
-    assert!(folder.path().join(picture).exists());
+    assert!(folder.path().join(image).exists());
 }
 
 #[test]

@@ -41,14 +41,14 @@ fn every_command_says_in_words_that_an_input_cannot_be_read() {
     for (name, target) in [("loop", None), ("mem", Some("/proc/self/mem")), (&*long, None)] {
         for (pattern, command) in READERS {
             let file = pattern.replace("{}", name);
-            let place = folder.path().join(&file);
+            let path = folder.path().join(&file);
             // An overlong name cannot be created.
-            let _ = std::os::unix::fs::symlink(target.map_or(&*file, |target| target), &place);
+            let _ = std::os::unix::fs::symlink(target.map_or(&*file, |target| target), &path);
             let arguments: Vec<_> = command.split(' ').map(|word| word.replace("{}", &file)).collect();
             let line = refusal(folder.path(), &arguments.iter().map(String::as_str).collect::<Vec<_>>());
             assert!(!line.contains("os error"), "{line}");
             assert!(line.contains(&file) && line.contains("; expected "), "{command}: {line}");
-            let _ = std::fs::remove_file(place);
+            let _ = std::fs::remove_file(path);
         }
     }
 }

@@ -44,10 +44,10 @@ fn unwritable_outputs_are_refused_before_rendering() {
 #[test]
 fn folders_that_allow_no_new_file_are_refused_before_rendering() {
     let folder = folder();
-    for place in ["/proc/a.png", "link.png"] {
+    for path in ["/proc/a.png", "link.png"] {
         std::os::unix::fs::symlink("missing/a.png", folder.path().join("link.png")).ok();
-        let line = refusal(folder.path(), &[&SMALL[..], &[place]].concat());
-        assert!(line.contains(place) && line.contains("cannot be written (No such file"), "{line}");
+        let line = refusal(folder.path(), &[&SMALL[..], &[path]].concat());
+        assert!(line.contains(path) && line.contains("cannot be written (No such file"), "{line}");
     }
 }
 
@@ -179,18 +179,18 @@ fn a_bake_keeps_painted_images_unless_it_is_told_to_replace_them() {
     let puff = fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../sprites/puff.sprite.json")).unwrap();
     fs::write(path("a.sprite.json"), puff).unwrap();
     fs::write(path("ball.motif.json"), MOTIF).unwrap();
-    for (picture, command) in [
+    for (image, command) in [
         ("ball.png", &["ramp", "bake", "ball.motif.json"][..]),
         ("a.detail.png", &["sprite", "bake", "a.sprite.json"]),
         ("a.six_way.png", &["sprite", "bake", "a.sprite.json", "--six-way"]),
         ("b.png", &["ramp", "fit", "-o", "b.ramp.json"]),
     ] {
-        image::RgbImage::new(8, 8).save(path(picture)).unwrap();
-        let before = fs::read(path(picture)).unwrap();
+        image::RgbImage::new(8, 8).save(path(image)).unwrap();
+        let before = fs::read(path(image)).unwrap();
         let line = refusal(folder.path(), command);
-        assert!(line.contains(&format!("{picture} was painted, or changed after it was baked, and is kept")), "{line}");
-        assert!(line.contains("`bake --overwrite`") && fs::read(path(picture)).unwrap() == before, "{line}");
-        fs::remove_file(path(picture)).unwrap();
+        assert!(line.contains(&format!("{image} was painted, or changed after it was baked, and is kept")), "{line}");
+        assert!(line.contains("`bake --overwrite`") && fs::read(path(image)).unwrap() == before, "{line}");
+        fs::remove_file(path(image)).unwrap();
     }
     fs::write(path("ball.png"), "painted").unwrap();
     for more in [&["--overwrite"][..], &[]] {

@@ -20,7 +20,7 @@ fn bad_presets_are_refused_with_file_and_place() {
     assert!(escape.contains("my.json: systems[0].material.sprite: \"../secret.png\" is not valid"), "{escape}");
     let missing = message(&system("\"material\": {\"sprite\": \"wisp2.png\"}"));
     assert!(missing.contains("wisp2.png: No such file"), "{missing}");
-    std::fs::write(folder.path().join("text.png"), "not a picture").unwrap();
+    std::fs::write(folder.path().join("text.png"), "not an image").unwrap();
     let broken = message(&system("\"material\": {\"diffuse_ramp\": \"text.png\"}"));
     assert!(broken.contains("text.png: not a PNG file"), "{broken}");
     assert!(refusal(folder.path(), &["render", "-o", "a.png", "none.json"]).contains("none.json: No such file"));

@@ -25,7 +25,7 @@ fn ramp_sheet_renders_a_shot_with_every_ramp_of_a_folder() {
         haze_core::assets::image::read_png(&folder.path().join("sheet.png")).unwrap().to_rgb8()
     };
     // The image above the strip of the ramp.
-    let above = |picture: &image::RgbImage, x, y| image::imageops::crop_imm(picture, x, y, 48, 25).to_image();
+    let above = |image: &image::RgbImage, x, y| image::imageops::crop_imm(image, x, y, 48, 25).to_image();
     let render = |sets: &[&str]| {
         let fixed = ["render", "fence", "--backend", "cpu", "--size", "48x27", "--assets", "ramps", "-o", "one.png"];
         let sets: Vec<_> = sets.iter().flat_map(|set| ["--set", set]).collect();
@@ -54,7 +54,7 @@ fn ramp_sheet_renders_a_shot_with_every_ramp_of_a_folder() {
     assert!(cell(&coverage, 0) != cell(&coverage, 1));
 
     // A broken ramp does not stop the others.
-    fs::write(folder.path().join("ramps/diffuse_broken.png"), "no picture").unwrap();
+    fs::write(folder.path().join("ramps/diffuse_broken.png"), "no image").unwrap();
     let arguments = ["ramp", "sheet", "fence", "--backend", "cpu", "--ramps", "ramps", "--role", "diffuse"];
     let output = haze(folder.path(), &[&arguments[..], &["--size", "96x54", "-o", "sheet.png"]].concat());
     assert_eq!((output.status.code(), stderr(&output).lines().count()), (Some(1), 1), "{}", stderr(&output));

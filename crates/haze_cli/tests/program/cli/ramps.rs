@@ -55,9 +55,9 @@ fn every_template_can_be_written_and_baked_and_passes_the_check() {
         let line = stdout_of(folder.path(), &["ramp", "new", "--template", template.name, "-o", &recipe]);
         assert!(line.starts_with(&format!("{recipe}: {}", template.description)), "{line}");
         stdout_of(folder.path(), &["ramp", "bake", &recipe]);
-        let picture = format!("{name}.png");
-        let checked = stdout_of(folder.path(), &["ramp", "check", &recipe, &picture]);
-        assert_eq!(checked, format!("{recipe}: good\n{picture}: good\n"));
+        let image = format!("{name}.png");
+        let checked = stdout_of(folder.path(), &["ramp", "check", &recipe, &image]);
+        assert_eq!(checked, format!("{recipe}: good\n{image}: good\n"));
     }
     // Existing files are not replaced.
     let again = refusal(folder.path(), &["ramp", "new", "-o", "diffuse_moon.ramp.json"]);
@@ -106,7 +106,7 @@ fn an_imported_image_bakes_back_within_the_stated_error() {
 #[test]
 fn ramp_check_reports_findings_and_exits_with_1() {
     let folder = folder();
-    let save = |name: &str, picture: DynamicImage| picture.save(folder.path().join(name)).unwrap();
+    let save = |name: &str, image: DynamicImage| image.save(folder.path().join(name)).unwrap();
     save("specular_gray.png", DynamicImage::ImageLuma8(GrayImage::from_pixel(16, 16, Luma([90]))));
     let slope = |x: u32| Luma([(20 + x * 40 / 256) as u8]);
     save("a.png", DynamicImage::ImageLuma8(GrayImage::from_fn(256, 1, |x, _| slope(x))));
@@ -151,9 +151,9 @@ fn a_ramp_is_shown_as_text_and_as_an_image() {
     assert!(!text.contains('\u{1b}') && text.contains('█'), "{text}");
     assert!(text.starts_with("toon.ramp.json: 256x1\n") && text.ends_with("0.720  #f6efe2  constant\n"), "{text}");
     stdout_of(folder.path(), &["ramp", "show", "toon.ramp.json", "-o", "toon.png"]);
-    let picture = haze_core::assets::image::read_png(&folder.path().join("toon.png")).unwrap().into_rgb8();
-    assert_eq!(picture.get_pixel(100, 40).0, [0x2b, 0x2a, 0x3a]);
-    assert_eq!(picture.get_pixel(540, 40).0, [0xf6, 0xef, 0xe2]);
+    let image = haze_core::assets::image::read_png(&folder.path().join("toon.png")).unwrap().into_rgb8();
+    assert_eq!(image.get_pixel(100, 40).0, [0x2b, 0x2a, 0x3a]);
+    assert_eq!(image.get_pixel(540, 40).0, [0xf6, 0xef, 0xe2]);
     let line = refusal(folder.path(), &["ramp", "show", "toon.png", "-o", "toon.png"]);
     assert!(line.contains("is also an input; expected another file"), "{line}");
 }
@@ -194,10 +194,10 @@ fn a_blank_of_every_role_has_labelled_axes() {
         };
         assert_eq!(line, format!("{name}: a {} ramp to paint over, {size}\n", role.name()));
         // Text at both ends: without it, a ramp changes by less than a code from one line to the next. The check allows 12.
-        let picture = haze_core::assets::image::read_png(&folder.path().join(&name)).unwrap().to_luma8();
-        let middle = picture.height() / 2;
+        let image = haze_core::assets::image::read_png(&folder.path().join(&name)).unwrap().to_luma8();
+        let middle = image.height() / 2;
         for end in [0..150, 362..512] {
-            let is_edge = |x: &u32, y| picture[(*x, y)].0[0].abs_diff(picture[(*x, y + 1)].0[0]) > 6;
+            let is_edge = |x: &u32, y| image[(*x, y)].0[0].abs_diff(image[(*x, y + 1)].0[0]) > 6;
             let edges = (middle - 10..middle + 10).map(|y| end.clone().filter(|x| is_edge(x, y)).count());
             let edges: usize = edges.sum();
             assert!(edges > 20, "{name}, {end:?}: {edges}");
@@ -239,9 +239,9 @@ fn ramps_are_fitted_to_path_traced_smoke() {
     assert!(error("fitted:") < 10.0 && error("diffuse_soft:") > 30.0, "{told}");
     assert_eq!(told.lines().filter(|line| line.contains('°')).count(), 32, "{told}");
     for name in ["lit", "against"] {
-        let picture = folder.path().join(name).with_extension("png");
-        assert_eq!(haze_core::assets::image::read_png(&picture).unwrap().to_rgb16().dimensions(), (128, 64));
-        assert!(haze_author::ramp::RampRecipe::load(&picture.with_extension("ramp.json")).unwrap().rows.len() == 5);
+        let image = folder.path().join(name).with_extension("png");
+        assert_eq!(haze_core::assets::image::read_png(&image).unwrap().to_rgb16().dimensions(), (128, 64));
+        assert!(haze_author::ramp::RampRecipe::load(&image.with_extension("ramp.json")).unwrap().rows.len() == 5);
     }
     assert!(folder.path().join("sheet.png").is_file());
     let render = ["render", "--size", "32x18", "--backend", "cpu", "-o", "a.png", "--set", "diffuse.backlight=ramp"];
@@ -251,7 +251,8 @@ fn ramps_are_fitted_to_path_traced_smoke() {
     assert!(String::from_utf8(output.stdout).unwrap().starts_with("lit.png against dust: brightness "));
     let refused = |rest: &[&str]| refusal(folder.path(), &[&fit[..], &puff, rest].concat());
     assert!(
-        refused(&["--albedo", "1.5"]).contains("invalid value '1.5' for '--albedo <SHARE>': expected a number, 0 to 1")
+        refused(&["--albedo", "1.5"])
+            .contains("invalid value '1.5' for '--albedo <FRACTION>': expected a number, 0 to 1")
     );
     assert!(
         refused(&["--albedo", "0.5,0.25"])

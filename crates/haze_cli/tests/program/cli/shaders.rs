@@ -16,15 +16,15 @@ fn a_broken_shader_gives_one_line_and_a_valid_one_changes_the_image() {
     let folder = folder();
     let folder = folder.path();
     let arguments = ["render", "--size", "64x36", "--backend", "gpu", "--shaders", "shaders", "-o", "a.png"];
-    let picture = || {
+    let image = || {
         let output = haze(folder, &arguments);
         assert!(output.status.success(), "{}", stderr(&output));
         std::fs::read(folder.join("a.png")).unwrap()
     };
     write(folder, COLOR);
-    let plain = picture();
+    let plain = image();
     write(folder, &COLOR.replace("return min(light,", "return min(light * 0.5,"));
-    assert_ne!(picture(), plain);
+    assert_ne!(image(), plain);
 
     write(folder, &COLOR.replace("saturate(light)", "saturat(light)"));
     let line = COLOR.lines().position(|line| line.contains("saturate(light)")).unwrap() + 1;

@@ -15,7 +15,7 @@ fn layers(folder: &Path) -> Vec<(String, String)> {
     list.lines().map(|line| split(line).unwrap()).collect()
 }
 
-/// Share of the pixels of `out.png` that differ from those of another image.
+/// Fraction of the pixels of `out.png` that differ from those of another image.
 fn changed(folder: &Path, before: &image::RgbaImage) -> f64 {
     let now = image::open(folder.join("out.png")).unwrap().to_rgba8();
     let differs = |(a, b): &(&image::Rgba<u8>, &image::Rgba<u8>)| a.0.iter().zip(b.0).any(|(a, b)| a.abs_diff(b) > 8);
@@ -42,10 +42,10 @@ fn every_layer_is_described_checked_and_seen_in_the_demo_scene() {
         done(folder.path(), &["preset", "add-system", "empty.json", &name, "-o", "with.json"]);
         assert_eq!(done(folder.path(), &["preset", "check", "with.json"]), "with.json: good\n", "{name}");
         assert!(render(folder.path(), &["with.json"]).status.success());
-        let share = changed(folder.path(), &before);
-        println!("{name}: {:.2} % of the pixels", 100.0 * share);
+        let fraction = changed(folder.path(), &before);
+        println!("{name}: {:.2} % of the pixels", 100.0 * fraction);
         // Sparks and embers are small.
-        assert!(share > 0.002, "{name}: {share}");
+        assert!(fraction > 0.002, "{name}: {fraction}");
     }
 }
 
@@ -86,8 +86,8 @@ fn systems_that_cannot_be_added_are_refused_with_one_line() {
     assert!(refused(&["campfire", "sparks", "-o", "a.png"]).contains("--output: a.png is not valid; expected a name"));
     assert!(refused(&["campfire", "sparks", "-o", "none/a.json"]).contains("a folder that exists"));
     assert!(refused(&["gone.json", "sparks"]).contains("gone.json"));
-    let place = haze(folder.path(), &["preset", "add-system", "campfire", "sparks", "--at", "1,2", "-o", "a.json"]);
-    assert!(!place.status.success() && stderr(&place).contains("expected X,Y,Z in metres"), "{}", stderr(&place));
+    let wrong = haze(folder.path(), &["preset", "add-system", "campfire", "sparks", "--at", "1,2", "-o", "a.json"]);
+    assert!(!wrong.status.success() && stderr(&wrong).contains("expected X,Y,Z in metres"), "{}", stderr(&wrong));
     let mut full = haze_preset::Preset::load("campfire").unwrap();
     full.systems = vec![full.systems[1].clone(); haze_preset::MAX_SYSTEMS];
     std::fs::write(folder.path().join("full.json"), full.to_json("")).unwrap();
@@ -100,17 +100,17 @@ fn systems_that_cannot_be_added_are_refused_with_one_line() {
 #[test]
 fn solo_draws_one_system_by_name_or_number() {
     let folder = folder();
-    let picture = |arguments: &[&str]| {
+    let image = |arguments: &[&str]| {
         let output = render(folder.path(), &[&["campfire"], arguments].concat());
         assert!(output.status.success(), "{arguments:?}: {}", stderr(&output));
         std::fs::read(folder.path().join("out.png")).unwrap()
     };
-    let [all, fire, sparks] = [picture(&[]), picture(&["--solo", "fire"]), picture(&["--solo", "sparks"])];
+    let [all, fire, sparks] = [image(&[]), image(&["--solo", "fire"]), image(&["--solo", "sparks"])];
     assert!(all != fire && all != sparks && fire != sparks);
-    assert!(picture(&["--solo", "1"]) == sparks);
-    // Settings are named by their places in the preset.
+    assert!(image(&["--solo", "1"]) == sparks);
+    // Settings are named by their positions in the preset.
     let set = ["--set", "systems[1].settings.fire.intensity=1"];
-    assert!(picture(&[&["--solo", "1"], &set[..]].concat()) != sparks);
+    assert!(image(&[&["--solo", "1"], &set[..]].concat()) != sparks);
     let said = refusal(folder.path(), &["render", "campfire", "--solo", "smoke", "-o", "a.png"]);
     assert_eq!(said, "haze: --solo: \"smoke\" is not valid; expected one of \"fire\", \"sparks\"\n");
     let said = refusal(folder.path(), &["render", "campfire", "--solo", "2", "-o", "a.png"]);

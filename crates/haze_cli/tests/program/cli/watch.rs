@@ -121,7 +121,7 @@ fn recipes_of_a_folder_are_followed_and_painted_images_are_kept() {
     let path = |name: &str| folder.path().join(name);
     fs::write(path("painted.ramp.json"), recipe(1)).unwrap();
     assert!(haze(folder.path(), &["ramp", "bake", "painted.ramp.json"]).status.success());
-    let picture = fs::read(path("painted.png")).unwrap();
+    let image = fs::read(path("painted.png")).unwrap();
     fs::write(path("odd.ramp.json"), recipe(1)).unwrap();
     fs::create_dir(path("odd.png")).unwrap();
     let watching = Watching::new(folder.path(), &["."]);
@@ -136,7 +136,7 @@ fn recipes_of_a_folder_are_followed_and_painted_images_are_kept() {
     fs::write(path("new.ramp.json"), recipe(8)).unwrap();
     watching.says("./new.png: 2x1", "back");
     assert_eq!(color(&path("new.png")), 8);
-    assert_eq!(fs::read(path("painted.png")).unwrap(), picture);
+    assert_eq!(fs::read(path("painted.png")).unwrap(), image);
     fs::write(path("painted.ramp.json"), recipe(2)).unwrap();
     watching.says("./painted.png: 2x1", "saved");
 }

@@ -160,7 +160,7 @@ impl Client {
         keys().rev().for_each(|key| self.fake(3, *key as u32, 0));
     }
 
-    /// Clicks the left mouse button at a place of the display.
+    /// Clicks the left mouse button at a position of the display.
     pub fn click(&mut self, x: u32, y: u32) {
         for (kind, button) in [(6, 0), (4, 1), (5, 1)] {
             self.fake(kind, button, x | y << 16);
@@ -168,8 +168,8 @@ impl Client {
     }
 
     /// Sends a keyboard or mouse event of the display: XTEST's FakeInput.
-    fn fake(&mut self, kind: u32, detail: u32, place: u32) {
-        self.send(&request(self.xtest, 2, &[kind | detail << 8, 0, self.root, 0, 0, place, 0, 0]));
+    fn fake(&mut self, kind: u32, detail: u32, position: u32) {
+        self.send(&request(self.xtest, 2, &[kind | detail << 8, 0, self.root, 0, 0, position, 0, 0]));
     }
 
     /// Asks a window to close, as its close button does.

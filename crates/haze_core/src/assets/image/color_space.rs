@@ -25,7 +25,7 @@ pub fn decode_color_png(path: &Path, bytes: &[u8]) -> Result<DynamicImage, Asset
     let tags = color_tags(bytes).unwrap_or_default();
     let space = |profile: Option<&[u8]>| {
         tags.space(profile).map_err(|found| {
-            let reason = format!("{found}; expected sRGB: convert the picture to sRGB when exporting it");
+            let reason = format!("{found}; expected sRGB: convert the image to sRGB when exporting it");
             AssetError::Image { path: path.into(), reason }
         })
     };
@@ -33,9 +33,9 @@ pub fn decode_color_png(path: &Path, bytes: &[u8]) -> Result<DynamicImage, Asset
     if is_png(bytes) && tags.cicp.is_some() {
         space(None)?;
     }
-    let (picture, profile) = decode_with_profile(path, bytes)?;
+    let (image, profile) = decode_with_profile(path, bytes)?;
     let space = space(profile.as_deref())?;
-    Ok(space.to_srgb(picture))
+    Ok(space.to_srgb(image))
 }
 
 /// Reads and decodes a PNG file of colors.
@@ -53,7 +53,7 @@ pub fn read_color_png(path: &Path) -> Result<DynamicImage, AssetError> {
 /// As [`read_color_png`], except that an unsupported color space is a note.
 pub fn color_conversion_notes(path: &Path) -> Result<Vec<String>, AssetError> {
     let bytes = read_file(path)?;
-    let (picture, profile) = decode_with_profile(path, &bytes)?;
+    let (image, profile) = decode_with_profile(path, &bytes)?;
     let mut notes = Vec::new();
     match color_tags(&bytes).unwrap_or_default().space(profile.as_deref()) {
         Err(found) => notes.push(format!("{found}; expected sRGB: it is refused")),
@@ -66,14 +66,14 @@ pub fn color_conversion_notes(path: &Path) -> Result<Vec<String>, AssetError> {
             }
         }
     }
-    if !is_opaque(&picture) {
+    if !is_opaque(&image) {
         notes.push("transparent texels; expected opaque ones: they are composited over black".into());
     }
     Ok(notes)
 }
 
-fn is_opaque(picture: &DynamicImage) -> bool {
-    !picture.color().has_alpha() || picture.to_rgba16().pixels().all(|pixel| pixel.0[3] == u16::MAX)
+fn is_opaque(image: &DynamicImage) -> bool {
+    !image.color().has_alpha() || image.to_rgba16().pixels().all(|pixel| pixel.0[3] == u16::MAX)
 }
 
 /// Conversion from an image's code values to linear light.
@@ -126,7 +126,8 @@ impl ColorTags {
         // An exponent of 0 is invalid and ignored.
         let power = |&gamma: &u32| (gamma > 0).then(|| Transfer::Power(100_000.0 / gamma as f32));
         let transfer = self.gamma.as_ref().and_then(power).unwrap_or(Transfer::Srgb);
-        let primaries = self.primaries.map(|primaries| primaries.map(|place| place.map(|x| f64::from(x) / 100_000.0)));
+        let primaries =
+            self.primaries.map(|primaries| primaries.map(|position| position.map(|x| f64::from(x) / 100_000.0)));
         Ok(Space { transfer, srgb_from_linear: from_primaries(primaries.unwrap_or(SRGB))? })
     }
 }
@@ -144,10 +145,10 @@ fn from_primaries(primaries: Primaries) -> Result<Option<DMat3>, String> {
 }
 
 impl Space {
-    fn to_srgb(self, picture: DynamicImage) -> DynamicImage {
+    fn to_srgb(self, image: DynamicImage) -> DynamicImage {
         let is_srgb = self.transfer == Transfer::Srgb && self.srgb_from_linear.is_none();
-        if is_srgb && is_opaque(&picture) {
-            return picture;
+        if is_srgb && is_opaque(&image) {
+            return image;
         }
         let light = |code: u16| {
             let code = f32::from(code) / 65535.0;
@@ -157,7 +158,7 @@ impl Space {
             }
         };
         let lights: Vec<_> = (0..=u16::MAX).map(light).collect();
-        let picture = picture.into_rgba16();
+        let image = image.into_rgba16();
         let texel = |pixel: &Rgba<u16>| {
             let [r, g, b, a] = pixel.0;
             let mut light = Vec3::from([r, g, b].map(|code| lights[usize::from(code)]));
@@ -167,8 +168,8 @@ impl Space {
             let light = light.clamp(Vec3::ZERO, Vec3::ONE) * (f32::from(a) / 65535.0);
             light.to_array().map(|light| (srgb_from_linear(light) * 65535.0).round() as u16)
         };
-        let texels = picture.pixels().flat_map(texel).collect();
-        ImageBuffer::from_raw(picture.width(), picture.height(), texels)
+        let texels = image.pixels().flat_map(texel).collect();
+        ImageBuffer::from_raw(image.width(), image.height(), texels)
             .map_or_else(DynamicImage::default, DynamicImage::ImageRgb16)
     }
 }

@@ -43,9 +43,9 @@ fn tag<'a>(profile: &'a [u8], name: &[u8; 4]) -> Option<&'a [u8]> {
     // Profiles have some tens of tags. Each entry has a name, an offset and a length.
     let mut entries = profile.get(132..)?.as_chunks::<12>().0.iter().take(count.min(1000));
     let entry = entries.find(|entry| entry.starts_with(name))?;
-    let place = read_u32(entry, 4)?;
+    let offset = read_u32(entry, 4)?;
     let length = read_u32(entry, 8)?;
-    profile.get(place..place.checked_add(length)?)
+    profile.get(offset..offset.checked_add(length)?)
 }
 
 fn read_u32(bytes: &[u8], at: usize) -> Option<usize> {
@@ -69,9 +69,9 @@ fn apply_curve(curve: &[u8], code: f32) -> Option<f32> {
                 let bytes = data.get(2 * index..2 * index + 2)?.try_into().ok()?;
                 Some(f32::from(u16::from_be_bytes(bytes)) / 65535.0)
             };
-            let place = code * (count - 1) as f32;
-            let low = place as usize;
-            let part = place.fract();
+            let position = code * (count - 1) as f32;
+            let low = position as usize;
+            let part = position.fract();
             Some(entry(low)? * (1.0 - part) + entry((low + 1).min(count - 1))? * part)
         }
         (b"para", 0) => read_s15fixed16(data).map(|[exponent]| code.powf(exponent)),

@@ -29,7 +29,7 @@ pub fn is_png(bytes: &[u8]) -> bool {
 /// [`AssetError::Image`] if the data is damaged, not a PNG, larger than 4096 pixels per side, or larger than 64 MiB when
 /// decoded.
 pub fn decode_png(path: &Path, bytes: &[u8]) -> Result<DynamicImage, AssetError> {
-    decode_with_profile(path, bytes).map(|(picture, _)| picture)
+    decode_with_profile(path, bytes).map(|(image, _)| image)
 }
 
 /// Decodes a PNG and returns the image with its ICC profile.
@@ -86,8 +86,8 @@ fn decode_pixels(bytes: &[u8]) -> Result<(DynamicImage, Option<Vec<u8>>), Decode
     }
     // A profile that cannot be decoded is ignored.
     let profile = decoder.icc_profile().unwrap_or_default();
-    let picture = DynamicImage::from_decoder(decoder).map_err(DecodeError::Damaged)?;
-    Ok((picture, profile))
+    let image = DynamicImage::from_decoder(decoder).map_err(DecodeError::Damaged)?;
+    Ok((image, profile))
 }
 
 const DAMAGED: &str = "a damaged PNG; expected one that other programs can open: export it again";
@@ -159,8 +159,8 @@ mod tests {
     #[test]
     fn a_truncated_png_is_refused() {
         let mut whole = Vec::new();
-        let picture = image::RgbImage::from_fn(16, 2, |x, y| image::Rgb([(x * 16) as u8, y as u8, (x * y) as u8]));
-        picture.write_to(&mut Cursor::new(&mut whole), image::ImageFormat::Png).unwrap();
+        let image = image::RgbImage::from_fn(16, 2, |x, y| image::Rgb([(x * 16) as u8, y as u8, (x * y) as u8]));
+        image.write_to(&mut Cursor::new(&mut whole), image::ImageFormat::Png).unwrap();
         for end in 0..whole.len() {
             let error = decode_png(Path::new("a.png"), &whole[..end]).unwrap_err().to_string();
             assert!(error.starts_with("a.png: ") && error.lines().count() == 1, "{end}: {error}");

@@ -23,7 +23,7 @@ const BRADFORD: DMat3 = DMat3::from_cols_array(&[
     -0.1614, 0.0367, 1.0296,
 ]);
 
-/// True if two places differ by more than the rounding of files.
+/// True if two positions differ by more than the rounding of files.
 pub(super) fn differs(a: &[f64; 2], b: &[f64; 2]) -> bool {
     (DVec2::from(*a) - DVec2::from(*b)).abs().max_element() > 0.002
 }

@@ -114,7 +114,7 @@ fn text<'a>(path: &Path, bytes: &'a [u8]) -> Result<&'a str, AssetError> {
         })
     };
     if is_png(bytes) {
-        return refuse((1, 1), "a PNG picture");
+        return refuse((1, 1), "a PNG image");
     }
     if bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]) {
         return refuse((1, 1), "text in UTF-16");

@@ -45,8 +45,8 @@ impl NoiseVolume {
     ///
     /// # Errors
     /// [`AssetError::Image`] if the image is not `size` by `size`², with `size` 1 to [`MAX_SIZE`].
-    pub fn from_image(path: &Path, picture: &RgbaImage) -> Result<Self, AssetError> {
-        let (size, height) = picture.dimensions();
+    pub fn from_image(path: &Path, image: &RgbaImage) -> Result<Self, AssetError> {
+        let (size, height) = image.dimensions();
         if size == 0 || size > MAX_SIZE || height != size * size {
             let reason = format!(
                 "{size}x{height} pixels are not a cube; expected slices below each other, for example 32x1024 pixels, \
@@ -54,7 +54,7 @@ impl NoiseVolume {
             );
             return Err(AssetError::Image { path: path.into(), reason });
         }
-        let texels = picture.pixels().map(|pixel| pixel.0).collect();
+        let texels = image.pixels().map(|pixel| pixel.0).collect();
         Ok(Self { size, texels, number: ImageNumber::default() })
     }
 
@@ -113,8 +113,8 @@ mod tests {
     #[test]
     fn images_that_are_not_a_cube_are_refused() {
         let refused = |width, height| {
-            let picture = RgbaImage::new(width, height);
-            NoiseVolume::from_image(Path::new("fbm.png"), &picture).unwrap_err().to_string()
+            let image = RgbaImage::new(width, height);
+            NoiseVolume::from_image(Path::new("fbm.png"), &image).unwrap_err().to_string()
         };
         assert!(refused(32, 32).contains("expected slices below each other"));
         assert!(refused(0, 0).contains("fbm.png"));

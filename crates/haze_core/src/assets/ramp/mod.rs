@@ -52,8 +52,8 @@ impl Ramp {
 
     /// Converts an sRGB image of 8 or 16 bits per channel. Alpha is ignored;
     /// [`decode_color_png`] applies it. The bottom row is 0 on the second axis.
-    pub fn from_image(picture: &DynamicImage) -> Self {
-        let pixels = picture.to_rgb16();
+    pub fn from_image(image: &DynamicImage) -> Self {
+        let pixels = image.to_rgb16();
         let size = UVec2::new(pixels.width(), pixels.height());
         let linear = |channel: u16| linear_from_srgb(f32::from(channel) / 65535.0);
         let colors = pixels.rows().rev().flat_map(|row| row.map(|pixel| Vec3::from(pixel.0.map(linear))));

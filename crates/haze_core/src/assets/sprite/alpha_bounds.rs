@@ -59,8 +59,8 @@ impl AlphaBounds {
 pub(super) fn alpha_bounds_texel(texels: &[[u8; 4]], size: u32) -> AlphaBoundsTexel {
     const CELLS: f32 = 8.0;
     // Bilinear filtering extends a texel by half a texel; 0.05 more allows for the sampler's rounding.
-    let found = |texel: u32| [texel as f32 - 0.55, texel as f32 + 1.55].map(|place| place / size as f32);
-    let cells = |texel: u32| found(texel).map(|place| (place * CELLS).clamp(0.0, CELLS - 1.0) as u64);
+    let found = |texel: u32| [texel as f32 - 0.55, texel as f32 + 1.55].map(|position| position / size as f32);
+    let cells = |texel: u32| found(texel).map(|position| (position * CELLS).clamp(0.0, CELLS - 1.0) as u64);
     let columns: Vec<u64> = (0..size)
         .map(|x| {
             let [first, last] = cells(x);
@@ -84,7 +84,7 @@ pub(super) fn alpha_bounds_texel(texels: &[[u8; 4]], size: u32) -> AlphaBoundsTe
         let of_row = [1.0 - 2.0 * left, 2.0 * bottom - 1.0, 2.0 * right - 1.0, 1.0 - 2.0 * top];
         reach.iter_mut().zip(of_row).for_each(|(reach, of_row)| *reach = reach.max(of_row));
     }
-    alpha_bounds.reach = reach.map(|share| (share * 255.0).ceil().min(255.0) as u8);
+    alpha_bounds.reach = reach.map(|fraction| (fraction * 255.0).ceil().min(255.0) as u8);
     alpha_bounds
 }
 
@@ -130,10 +130,13 @@ mod tests {
         for (frame, level) in (0..4).flat_map(|frame| (0..sprite.level_count()).map(move |level| (frame, level))) {
             let frames = FlipbookFrames { first: frame, second: frame + 1, blend: 0.5 };
             let reach = alpha_bounds.trimmed_extent(frames, level as f32);
-            for place in (0..128 * 128).map(|i| (UVec2::new(i % 128, i / 128).as_vec2() + 0.5) / 64.0 - 1.0) {
-                let is_within = place.cmpge(-reach.xy()).all() && place.cmple(reach.zw()).all();
-                let found = sample_sprite(&sprite, sprite_uv(place), frames, Vec2::ZERO, level as f32).w;
-                assert!(is_within || found == 0.0, "frame {frame}, level {level}: {found} at {place}, reach {reach}");
+            for position in (0..128 * 128).map(|i| (UVec2::new(i % 128, i / 128).as_vec2() + 0.5) / 64.0 - 1.0) {
+                let is_within = position.cmpge(-reach.xy()).all() && position.cmple(reach.zw()).all();
+                let found = sample_sprite(&sprite, sprite_uv(position), frames, Vec2::ZERO, level as f32).w;
+                assert!(
+                    is_within || found == 0.0,
+                    "frame {frame}, level {level}: {found} at {position}, reach {reach}"
+                );
                 beyond += u32::from(!is_within);
             }
         }

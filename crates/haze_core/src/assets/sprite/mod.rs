@@ -69,11 +69,11 @@ impl Sprite {
     /// # Errors
     /// [`AssetError::Image`] if the layout does not fit the image, frames are not square, or a frame is not clear at its
     /// border (the sprite would be visible as a square).
-    pub fn from_image(path: &Path, picture: &RgbaImage, layout: SpriteLayout) -> Result<Self, AssetError> {
+    pub fn from_image(path: &Path, image: &RgbaImage, layout: SpriteLayout) -> Result<Self, AssetError> {
         let error = |reason: String| Err(AssetError::Image { path: path.into(), reason });
         let columns = layout.columns;
         let rows = layout.rows;
-        let (width, height) = picture.dimensions();
+        let (width, height) = image.dimensions();
         if !columns.checked_mul(rows).is_some_and(|frames| (1..=MAX_FRAMES).contains(&frames)) {
             return error(format!("{columns}x{rows} frames; expected 1 to {MAX_FRAMES} frames"));
         }
@@ -89,7 +89,7 @@ impl Sprite {
             let origin = UVec2::new(frame % columns, frame / columns) * size;
             for y in 0..size {
                 for x in 0..size {
-                    let mut texel = picture.get_pixel(origin.x + x, origin.y + y).0;
+                    let mut texel = image.get_pixel(origin.x + x, origin.y + y).0;
                     if layout.y_down {
                         texel[1] = 255 - texel[1];
                     }
@@ -182,11 +182,11 @@ impl Sprite {
     pub fn alpha_bounds(&self, after: Option<&Self>) -> AlphaBounds {
         let texels = std::iter::once(self).chain(after).flat_map(|sprite| {
             sprite.alpha_bounds.get_or_measure(|| {
-                let places = (0..sprite.frame_count)
+                let positions = (0..sprite.frame_count)
                     .flat_map(|frame| (0..sprite.level_count()).map(move |level| (level, frame)));
                 let bounds =
                     |(level, frame)| alpha_bounds_texel(sprite.frame_texels(level, frame), sprite.level_size(level));
-                places.map(bounds).collect()
+                positions.map(bounds).collect()
             })
         });
         AlphaBounds::new(self.level_count(), texels.copied().collect())
@@ -246,17 +246,17 @@ mod tests {
     use super::*;
     use image::Rgba;
 
-    fn picture(width: u32, height: u32) -> RgbaImage {
+    fn image(width: u32, height: u32) -> RgbaImage {
         RgbaImage::from_pixel(width, height, Rgba([128, 200, 255, 0]))
     }
 
-    fn message(picture: &RgbaImage, layout: SpriteLayout) -> String {
-        Sprite::from_image(Path::new("wisp.png"), picture, layout).unwrap_err().to_string()
+    fn message(image: &RgbaImage, layout: SpriteLayout) -> String {
+        Sprite::from_image(Path::new("wisp.png"), image, layout).unwrap_err().to_string()
     }
 
     #[test]
     fn frames_run_left_to_right_then_down() {
-        let mut sheet = picture(8, 8);
+        let mut sheet = image(8, 8);
         sheet.put_pixel(5, 2, Rgba([10, 20, 30, 40]));
         let sprite = Sprite::from_image(Path::new(""), &sheet, SpriteLayout { columns: 2, rows: 2, y_down: true });
         let sprite = sprite.unwrap();
@@ -267,7 +267,7 @@ mod tests {
 
     #[test]
     fn mip_levels_weight_normals_by_amount() {
-        let mut sheet = picture(4, 4);
+        let mut sheet = image(4, 4);
         sheet.put_pixel(1, 1, Rgba([255, 0, 0, 200]));
         let sprite = Sprite::from_image(Path::new(""), &sheet, SpriteLayout::default()).unwrap();
         assert_eq!(sprite.texel(1, 0, 0, 0) * 255.0, Vec4::new(255.0, 0.0, 0.0, 50.0));
@@ -276,9 +276,9 @@ mod tests {
 
     #[test]
     fn layouts_that_do_not_fit_and_opaque_borders_are_refused() {
-        assert!(message(&picture(8, 8), SpriteLayout { columns: 3, rows: 1, y_down: false }).contains("3x1 square"));
-        assert!(message(&picture(8, 8), SpriteLayout { columns: 0, rows: 1, y_down: false }).contains("1 to 256"));
-        let mut square = picture(8, 8);
+        assert!(message(&image(8, 8), SpriteLayout { columns: 3, rows: 1, y_down: false }).contains("3x1 square"));
+        assert!(message(&image(8, 8), SpriteLayout { columns: 0, rows: 1, y_down: false }).contains("1 to 256"));
+        let mut square = image(8, 8);
         square.put_pixel(0, 3, Rgba([0, 0, 0, 9]));
         assert!(message(&square, SpriteLayout::default()).contains("alpha 9 on its border at (0, 3)"));
     }

@@ -6,7 +6,7 @@ use crate::formula::grain::eroded;
 /// Largest alpha whose optical depth is counted: that of an alpha of 1 is infinite. 0.98 is 3.9.
 const MAX_ALPHA: f32 = 0.98;
 
-/// Smallest extent of a sprite's density, as a share of the sprite's.
+/// Smallest extent of a sprite's density, as a fraction of the sprite's.
 const MIN_REACH: f32 = 0.25;
 
 /// Density of a sprite, over all its frames: the parameters of [`mean_optical_depth`], and its extent.
@@ -16,9 +16,9 @@ pub struct SpriteDensity {
     pub mean_alpha: f32,
     /// Alpha in the middle of a sprite of this mean, 0 to 1.
     pub peak_alpha: f32,
-    /// Share of its alpha that remains at an erosion of 1.
-    pub eroded_share: f32,
-    /// Radius of the bump that spreads as far as the sprite's optical depth does, as a share of half the sprite's side.
+    /// Fraction of its alpha that remains at an erosion of 1.
+    pub eroded_fraction: f32,
+    /// Radius of the bump that spreads as far as the sprite's optical depth does, as a fraction of half the sprite's side.
     pub reach: f32,
 }
 
@@ -49,8 +49,8 @@ impl SpriteDensity {
                 high = middle;
             }
         }
-        let eroded_share = mean(|alpha| eroded(alpha, 0.0, 1.0)) / mean_alpha.max(1.0e-6);
-        Self { mean_alpha, peak_alpha: 0.5 * (low + high), eroded_share, reach: reach(side, texels) }
+        let eroded_fraction = mean(|alpha| eroded(alpha, 0.0, 1.0)) / mean_alpha.max(1.0e-6);
+        Self { mean_alpha, peak_alpha: 0.5 * (low + high), eroded_fraction, reach: reach(side, texels) }
     }
 }
 
@@ -60,9 +60,9 @@ fn reach(side: u32, texels: &[[u8; 4]]) -> f32 {
     let mut squares = 0.0_f64;
     for (texel, [.., alpha]) in (0..).zip(texels) {
         let depth = -(1.0 - (f32::from(*alpha) / 255.0).min(MAX_ALPHA)).ln();
-        let place = [texel % side, texel / side % side].map(|at| (at as f32 + 0.5) / side as f32 * 2.0 - 1.0);
+        let position = [texel % side, texel / side % side].map(|at| (at as f32 + 0.5) / side as f32 * 2.0 - 1.0);
         total += f64::from(depth);
-        squares += f64::from(depth * (place[0] * place[0] + place[1] * place[1]) * 0.5);
+        squares += f64::from(depth * (position[0] * position[0] + position[1] * position[1]) * 0.5);
     }
     // Variance of the bump 15/16·(1 - q²)².
     const BUMP: f64 = 1.0 / 7.0;
@@ -75,7 +75,7 @@ mod tests {
     use super::super::{Sprite, SpriteLayout};
     use super::*;
     use crate::assets::noise::NoiseVolume;
-    use crate::formula::grain::kept_share;
+    use crate::formula::grain::kept_fraction;
 
     #[test]
     fn reach_is_that_of_a_bump_with_the_same_spread() {
@@ -98,7 +98,7 @@ mod tests {
             let layout = SpriteLayout { columns, rows: 2, y_down: false };
             let sprite = Sprite::load(format!("../../sprites/{name}.png").as_ref(), layout).unwrap();
             let noise = NoiseVolume::load("../../sprites/fbm.png".as_ref()).unwrap();
-            let SpriteDensity { eroded_share, .. } = *sprite.density();
+            let SpriteDensity { eroded_fraction, .. } = *sprite.density();
             let alphas: Vec<_> =
                 sprite.level_bytes(0).iter().skip(3).step_by(4).map(|a| f32::from(*a) / 255.0).collect();
             let densities: Vec<_> = noise.bytes().iter().skip(3).step_by(4).map(|a| f32::from(*a) / 255.0).collect();
@@ -107,7 +107,7 @@ mod tests {
                 let met = alphas.iter().zip(densities.iter().cycle().step_by(7));
                 let kept: f32 = met.map(|(alpha, density)| eroded(*alpha, density - 0.5, erosion)).sum();
                 let kept = kept / alphas.iter().sum::<f32>();
-                let computed = kept_share(eroded_share, erosion);
+                let computed = kept_fraction(eroded_fraction, erosion);
                 assert!((kept - computed).abs() < 0.03, "{name} at {erosion}: {kept}, computed {computed}");
             }
         }

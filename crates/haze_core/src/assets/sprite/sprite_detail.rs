@@ -9,7 +9,7 @@ const LEVELS: usize = 6;
 /// Frames that stand for the whole flipbook, and texels that stand for a whole frame.
 const FRAMES: u32 = 2;
 const TEXELS: u32 = 1024;
-/// Distance of the texels, which meets all places within the texels of a coarser level.
+/// Distance of the texels, which meets all positions within the texels of a coarser level.
 const STRIDE: u32 = 40_503;
 /// Power of a texel's size that the error of interpolating an image between them grows with, if the texels are smaller
 /// than those of the image.
@@ -55,14 +55,14 @@ impl SpriteDetail {
     /// Detail that a target loses of a sprite at amount 1. `lod`: log2 of the sprite's texels per texel of the target,
     /// along a side.
     pub fn lost(&self, lod: f32) -> LostDetail {
-        let place = lod - 1.0;
-        let ([fine, coarse], share) = if place <= 0.0 {
-            ([LostDetail::default(), self.lost[0]], (MAGNIFIED_POWER * place).exp2())
+        let position = lod - 1.0;
+        let ([fine, coarse], fraction) = if position <= 0.0 {
+            ([LostDetail::default(), self.lost[0]], (MAGNIFIED_POWER * position).exp2())
         } else {
-            let index = (place as usize).min(LEVELS - 2);
-            ([self.lost[index], self.lost[index + 1]], (place - index as f32).min(1.0))
+            let index = (position as usize).min(LEVELS - 2);
+            ([self.lost[index], self.lost[index + 1]], (position - index as f32).min(1.0))
         };
-        let mix = |fine: f32, coarse: f32| fine + (coarse - fine) * share;
+        let mix = |fine: f32, coarse: f32| fine + (coarse - fine) * fraction;
         LostDetail { amount: mix(fine.amount, coarse.amount), normal: mix(fine.normal, coarse.normal) }
     }
 }
@@ -78,12 +78,12 @@ fn squared_loss(sprite: &impl Texture2dArray, frame: u32, level: u32) -> [f64; 2
     };
     let scale = coarse as f32 / size as f32;
     let bilinear = |at: UVec2| {
-        let place = ((at.as_vec2() + 0.5) * scale - 0.5).clamp(Vec2::ZERO, Vec2::splat(coarse as f32 - 1.0));
-        let low = place.as_uvec2();
-        let share = place.fract();
+        let position = ((at.as_vec2() + 0.5) * scale - 0.5).clamp(Vec2::ZERO, Vec2::splat(coarse as f32 - 1.0));
+        let low = position.as_uvec2();
+        let fraction = position.fract();
         let high = (low + 1).min(UVec2::splat(coarse - 1));
-        let row = |y| premultiplied(level, low.x, y).lerp(premultiplied(level, high.x, y), share.x);
-        row(low.y).lerp(row(high.y), share.y)
+        let row = |y| premultiplied(level, low.x, y).lerp(premultiplied(level, high.x, y), fraction.x);
+        row(low.y).lerp(row(high.y), fraction.y)
     };
     mean_squares(size, |at| premultiplied(0, at.x, at.y) - bilinear(at))
 }
@@ -91,9 +91,9 @@ fn squared_loss(sprite: &impl Texture2dArray, frame: u32, level: u32) -> [f64; 2
 /// Mean squares of the texels of a frame: of the amount, and of the rest.
 fn mean_squares(size: u32, texel: impl Fn(UVec2) -> Vec4) -> [f64; 2] {
     let count = TEXELS.min(size * size);
-    let places =
+    let positions =
         (0..count).map(|index| index.wrapping_mul(STRIDE) % (size * size)).map(|at| UVec2::new(at % size, at / size));
-    let sum = places.map(texel).fold([0.0; 2], |[amount, normal], texel| {
+    let sum = positions.map(texel).fold([0.0; 2], |[amount, normal], texel| {
         [amount + f64::from(texel.w * texel.w), normal + f64::from(texel.xyz().length_squared())]
     });
     sum.map(|sum| sum / f64::from(count))

@@ -28,14 +28,14 @@ impl Puff {
         let from = cell + 0.5;
         let ray = shadow_ray(light, from, Vec3::splat(self.size));
         let step = ray.w / SHADOW_STEPS as f32;
-        let places = (0..SHADOW_STEPS).map(|index| from + ray.truncate() * ((index as f32 + 0.5) * step));
-        places.map(|place| trilinear(place, |cell| self.density(cell))).sum::<f32>() * step
+        let positions = (0..SHADOW_STEPS).map(|index| from + ray.truncate() * ((index as f32 + 0.5) * step));
+        positions.map(|position| trilinear(position, |cell| self.density(cell))).sum::<f32>() * step
     }
 }
 
-fn trilinear(place: Vec3, load: impl Fn(Vec3) -> f32) -> f32 {
-    let low = (place - 0.5).floor();
-    let high_weight = place - 0.5 - low;
+fn trilinear(position: Vec3, load: impl Fn(Vec3) -> f32) -> f32 {
+    let low = (position - 0.5).floor();
+    let high_weight = position - 0.5 - low;
     let corners = (0..8).map(|corner| vec3((corner & 1) as f32, (corner >> 1 & 1) as f32, (corner >> 2) as f32));
     let weight = |offset: Vec3| Vec3::select(offset.cmpeq(Vec3::ONE), high_weight, 1.0 - high_weight);
     corners.map(|offset| load(low + offset) * weight(offset).to_array().iter().product::<f32>()).sum()
@@ -62,7 +62,7 @@ fn puff_alone_has_no_shadow_on_itself() {
             let found =
                 directions.map(|to_light| trilinear(puff.center, |cell| puff.march(cell, to_light.extend(1.0))));
             let mean = found.iter().sum::<f32>() / 5.0;
-            // A bump a few cells wide is not the same in all directions and places.
+            // A bump a few cells wide is not the same in all directions and positions.
             assert!((mean - own).abs() < 0.2, "{radius} {offset}: {mean}, own {own}");
             assert!(found.iter().all(|depth| (depth - own).abs() < 0.25), "{radius} {offset}: {found:?}, own {own}");
         }

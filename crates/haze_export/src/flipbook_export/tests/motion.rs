@@ -6,7 +6,7 @@ use super::*;
 struct MixedFrames {
     colors: [RgbaImage; 2],
     motions: [RgbaImage; 2],
-    /// Shares of a frame's width and height, in texture coordinates from the upper left corner.
+    /// Fractions of a frame's width and height, in texture coordinates from the upper left corner.
     motion_scale: Vec2,
 }
 
@@ -30,19 +30,19 @@ impl MixedFrames {
         (sample(&self.motions[index], uv).xy() * 2.0 - 1.0) * self.motion_scale
     }
 
-    /// `share`: of the second frame. `strength`: factor of the vectors; 0 is a cross-fade.
-    fn texel(&self, at: UVec2, share: f32, strength: f32) -> Vec4 {
+    /// `fraction`: of the second frame. `strength`: factor of the vectors; 0 is a cross-fade.
+    fn texel(&self, at: UVec2, fraction: f32, strength: f32) -> Vec4 {
         let at = Self::uv(at);
-        let a = sample(&self.colors[0], at - self.motion(0, at) * share * strength);
-        let b = sample(&self.colors[1], at + self.motion(1, at) * (1.0 - share) * strength);
-        let mixed = (a.xyz() * a.w).lerp(b.xyz() * b.w, share);
-        let alpha = a.w + (b.w - a.w) * share;
+        let a = sample(&self.colors[0], at - self.motion(0, at) * fraction * strength);
+        let b = sample(&self.colors[1], at + self.motion(1, at) * (1.0 - fraction) * strength);
+        let mixed = (a.xyz() * a.w).lerp(b.xyz() * b.w, fraction);
+        let alpha = a.w + (b.w - a.w) * fraction;
         (mixed / alpha.max(1.0e-4)).extend(alpha)
     }
 
     /// Mean squared difference from the image of the renderer.
-    fn error(&self, expected: &RgbaImage, share: f32, strength: f32) -> f32 {
-        difference(|at| self.texel(at, share, strength), |at| texel(expected, at.as_ivec2()))
+    fn error(&self, expected: &RgbaImage, fraction: f32, strength: f32) -> f32 {
+        difference(|at| self.texel(at, fraction, strength), |at| texel(expected, at.as_ivec2()))
     }
 }
 
@@ -84,10 +84,10 @@ fn motion_vectors_predict_flames_with_sparks_at_times_to_which_they_are_not_fitt
     let frames = frames(2, 24.0);
     let flipbook = Flipbook::new(&shot, &frames, options(Engine::Godot));
     let mixed = MixedFrames::new(&flipbook, Engine::Godot, [0, 1]);
-    for share in [0.25, 0.5, 0.75] {
-        let expected = image_after(&shot, &frames, share);
-        let error = |strength: f32| mixed.error(&expected, share, strength);
-        assert!(error(1.0) < 0.9 * error(0.0), "at {share}: {} with, {} without", error(1.0), error(0.0));
+    for fraction in [0.25, 0.5, 0.75] {
+        let expected = image_after(&shot, &frames, fraction);
+        let error = |strength: f32| mixed.error(&expected, fraction, strength);
+        assert!(error(1.0) < 0.9 * error(0.0), "at {fraction}: {} with, {} without", error(1.0), error(0.0));
     }
 }
 

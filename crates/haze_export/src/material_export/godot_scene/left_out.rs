@@ -50,7 +50,7 @@ pub fn left_out(system: &PresetSystem) -> Vec<(&'static str, &'static str)> {
         (
             process.is_turbulent(),
             "`turbulence`",
-            "Godot's, of the same size: it turns the motion by a share, and does not add to it",
+            "Godot's, of the same size: it turns the motion by a fraction, and does not add to it",
         ),
         (
             emitter.turbulence > 0.0 && !process.is_turbulent(),
@@ -69,7 +69,7 @@ pub fn left_out(system: &PresetSystem) -> Vec<(&'static str, &'static str)> {
             "`obstacle`",
             "no obstacle: add a `GPUParticlesCollisionBox3D`, and set *Collision > Mode* of the process material",
         ),
-        (emitter.small_share > 0.0, "`small_share`", "all particles have the size of the larger ones"),
+        (emitter.small_fraction > 0.0, "`small_fraction`", "all particles have the size of the larger ones"),
         (emitter.spin > 0.0 && emitter.drag > 0.0, "`spin`", "slowed by drag as for a particle of the mean life"),
         (settings.burns() && emitter.heat_spread > 0.0, "`heat_spread`", "all particles of an age have the mean heat"),
         (settings.is_stretched(), "`sprite.stretch`", "sprites are not stretched"),

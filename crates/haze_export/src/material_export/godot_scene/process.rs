@@ -34,7 +34,7 @@ pub struct Process<'a> {
     longest: f32,
     /// Seconds of emission; 0 without an end.
     duration: f32,
-    /// Share of a particle's motion that noise turns.
+    /// Fraction of a particle's motion that noise turns.
     influence: f32,
 }
 
@@ -89,7 +89,7 @@ impl<'a> Process<'a> {
         flown.velocity + carried.velocity
     }
 
-    /// Share that drag leaves of a velocity at birth, at an age, times the speed at that age.
+    /// Fraction that drag leaves of a velocity at birth, at an age, times the speed at that age.
     fn kept_speed(&self, age: f32) -> f32 {
         let pace = pace_at(&self.middle, self.middle.lifetime, age * self.middle.lifetime);
         (1.0 - self.middle.drag * drag_integrals(self.middle.drag, pace.flown).x) * pace.speed
@@ -108,8 +108,8 @@ impl<'a> Process<'a> {
         amount * self.system.settings.accumulate.opacity
     }
 
-    /// Mean share of the angle that a particle has turned by at an age, without drag.
-    fn turned_share(&self, age: f32) -> f32 {
+    /// Mean fraction of the angle that a particle has turned by at an age, without drag.
+    fn turned_fraction(&self, age: f32) -> f32 {
         let seconds = (age * self.emitter.lifetime).max(1.0e-4);
         drag_integrals(self.emitter.drag, seconds).x / seconds
     }
@@ -153,7 +153,7 @@ impl<'a> Process<'a> {
         text += &curve_texture("size", |age| self.radius(age));
         text += &curve_texture("amount", |age| self.amount(age));
         if self.emitter.spin > 0.0 {
-            text += &curve_texture("spin", |age| self.turned_share(age));
+            text += &curve_texture("spin", |age| self.turned_fraction(age));
         }
         text + &self.colors(assets)
     }
@@ -249,7 +249,7 @@ impl<'a> Process<'a> {
         material.range("turbulence_influence", self.influence, self.influence);
     }
 
-    /// Frames of a life, as shares of all frames.
+    /// Frames of a life, as fractions of all frames.
     fn add_animation(&self, frames: f32, material: &mut Properties) {
         let sprite = &self.system.settings.sprite;
         let (offset, speed) = match sprite.for_frames(frames).animation {
@@ -265,13 +265,13 @@ impl<'a> Process<'a> {
     /// The node.
     pub fn node(&self) -> Properties {
         let emitter = &self.emitter;
-        let share = if self.duration > 0.0 { curve_integral(&emitter.rate_curve, 1.0) } else { 1.0 };
-        let births = emitter.rate * self.duration * share;
+        let fraction = if self.duration > 0.0 { curve_integral(&emitter.rate_curve, 1.0) } else { 1.0 };
+        let births = emitter.rate * self.duration * fraction;
         let period = self.system.emitter.period * self.system.emitter.size.sqrt();
         let amount = match () {
             () if self.is_one_shot() => births,
             () if period > 0.0 => births / period * self.longest,
-            () => emitter.rate * share * self.longest,
+            () => emitter.rate * fraction * self.longest,
         };
         let Vec3 { x, y, z } = emitter.position;
         let mut node = Properties::default();

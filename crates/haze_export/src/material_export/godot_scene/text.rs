@@ -35,7 +35,7 @@ pub fn sub_resource(kind: &str, id: &str, properties: &Properties) -> String {
 
 /// Number of ages at which a curve is computed before points that lie on straight lines are left out.
 const AGES: usize = 256;
-/// Most that a curve of fewer points is off, as a share of its range.
+/// Most that a curve of fewer points is off, as a fraction of its range.
 const CURVE_ERROR: f32 = 5.0e-3;
 
 /// Points (age, value) with straight lines between them, as few as show a curve. `value`: of an age, 0 to 1.
@@ -55,8 +55,8 @@ fn curve_points(value: impl Fn(f32) -> f32) -> Vec<Vec2> {
     let mut open = vec![(0, AGES)];
     while let Some((first, last)) = open.pop() {
         let off = |index: &usize| {
-            let share = (all[*index].x - all[first].x) / (all[last].x - all[first].x);
-            (all[*index].y - all[first].y - (all[last].y - all[first].y) * share).abs()
+            let fraction = (all[*index].x - all[first].x) / (all[last].x - all[first].x);
+            (all[*index].y - all[first].y - (all[last].y - all[first].y) * fraction).abs()
         };
         let furthest = (first + 1..last).max_by(|a, b| off(a).total_cmp(&off(b)));
         if let Some(index) = furthest.filter(|index| off(index) > CURVE_ERROR * range) {
@@ -138,8 +138,8 @@ mod tests {
             let points = curve_points(shape);
             assert!(points.len() <= most, "{}", points.len());
             for pair in points.windows(2) {
-                for share in [0.25, 0.5, 0.75] {
-                    let at = pair[0].lerp(pair[1], share);
+                for fraction in [0.25, 0.5, 0.75] {
+                    let at = pair[0].lerp(pair[1], fraction);
                     assert!((at.y - shape(at.x)).abs() < 0.02, "{at}: {}", shape(at.x));
                 }
             }

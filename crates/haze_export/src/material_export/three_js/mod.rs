@@ -75,9 +75,9 @@ pub fn webgl_module(snippet: &Snippet, functions: &str) -> String {
     )
 }
 
-/// Share that a color of a coverage or heat ramp stands for: `painted_share` of the shaders.
+/// Fraction that a color of a coverage or heat ramp stands for: `painted_fraction` of the shaders.
 const PAINTED: &str = "\
-const paintedShare = paint => tsl.sRGBTransferOETF(vec3(tsl.luminance(paint).saturate())).x;
+const paintedFraction = paint => tsl.sRGBTransferOETF(vec3(tsl.luminance(paint).saturate())).x;
 
 ";
 
@@ -104,7 +104,8 @@ pub fn webgpu_module(settings: &Settings) -> String {
         even_light += ".add(sampleRamp(textures.fire_ramp, heat, covered).mul(FIRE_INTENSITY))";
     }
     let covers_by_ramp = settings.coverage == CoverageMode::Ramp;
-    let coverage = if covers_by_ramp { "paintedShare(sampleRamp(textures.coverage_ramp, covered))" } else { "covered" };
+    let coverage =
+        if covers_by_ramp { "paintedFraction(sampleRamp(textures.coverage_ramp, covered))" } else { "covered" };
     let diffuse = match settings.diffuse.backlight {
         Backlight::Same => "sampleRamp(textures.diffuse_ramp, ...at)",
         Backlight::Ramp => {
@@ -119,7 +120,7 @@ pub fn webgpu_module(settings: &Settings) -> String {
         RampFilter::Nearest => "tsl.textureLoad(ramp, tsl.ivec2(texel.add(0.5)))",
     };
     let if_it_burns = |text: &str| if burns { text.to_owned() } else { String::new() };
-    let heat = "        const byAge = paintedShare(sampleRamp(textures.heat_ramp, particle.y));\n        \
+    let heat = "        const byAge = paintedFraction(sampleRamp(textures.heat_ramp, particle.y));\n        \
                 const heat = varying(byAge.mul(this.numbers.heat));\n";
     filled(
         WEBGPU,

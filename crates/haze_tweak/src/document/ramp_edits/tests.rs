@@ -19,7 +19,7 @@ use haze_preset::{AssetFolders, CompressionEffort, Preset, write_png};
 use super::{RampEdits, RampOrigin};
 use crate::document::Document;
 use crate::window::Window;
-use crate::window::testing::{brightness, picture, window};
+use crate::window::testing::{brightness, screenshot, window};
 
 /// Folder with a preset whose diffuse ramp is `mine.png`, made from a recipe beside it.
 struct Folder(tempfile::TempDir);
@@ -88,7 +88,7 @@ fn wait(harness: &mut Harness<'_, Window>) {
 
 fn shown(harness: &mut Harness<'_, Window>) -> f64 {
     let part = harness.get_by_label("viewport").rect();
-    brightness(&picture(harness), part)
+    brightness(&screenshot(harness), part)
 }
 
 fn press(harness: &mut Harness<'_, Window>, key: Key, modifiers: Modifiers) {
@@ -235,7 +235,7 @@ fn a_stop_takes_a_color_from_the_image() {
     let mut harness = folder.open();
     let pixel = harness.get_by_label("viewport").rect().center();
     let camera = harness.state().session.document.preset.camera;
-    let [r, g, b, _] = picture(&mut harness).get_pixel(pixel.x as u32, pixel.y as u32).0;
+    let [r, g, b, _] = screenshot(&mut harness).get_pixel(pixel.x as u32, pixel.y as u32).0;
     harness.get_by_label("Pick color").click();
     wait(&mut harness);
     harness.hover_at(pixel);
@@ -271,7 +271,7 @@ fn write_images_of_the_gradient_editor() {
         harness.ctx.set_theme(theme);
         harness.get_by_label("stop 2").focus();
         wait(&mut harness);
-        picture(&mut harness).save(into.join(format!("ramps_own_{theme:?}.png"))).unwrap();
+        screenshot(&mut harness).save(into.join(format!("ramps_own_{theme:?}.png"))).unwrap();
     }
 }
 
@@ -301,8 +301,8 @@ fn a_gradient_is_dragged_from_one_ramp_onto_another() {
     harness.run_steps(2);
     harness.drag_at(from);
     harness.run_steps(2);
-    for share in [0.2, 0.6, 1.0] {
-        harness.hover_at(from + share * (to - from));
+    for fraction in [0.2, 0.6, 1.0] {
+        harness.hover_at(from + fraction * (to - from));
         harness.run_steps(2);
     }
     harness.drop_at(to);

@@ -13,7 +13,7 @@ use haze_core::error::Error;
 use haze_preset::{AssetFolders, MaterialSources, Preset};
 
 use super::Document;
-use crate::platform::asset_loading::place_of;
+use crate::platform::asset_loading::image_path;
 use sprite_bake_job::{BakeOrder, BakeResult, Baked, FinishedBake, FullBake, SpriteBakeJob};
 use sprite_source::{SpriteOrigin, SpriteState, Stamps, copy, detail_of, recipe_of, recipe_of_built_in, stamps};
 
@@ -32,7 +32,7 @@ pub struct SpriteEdits {
 
 /// Sprite with its recipe and its bakes.
 pub struct EditedSprite {
-    picture: PathBuf,
+    image: PathBuf,
     /// Layout that the preset has for it.
     layout: SpriteLayout,
     pub source: SpriteOrigin,
@@ -43,7 +43,7 @@ pub struct EditedSprite {
     pub broken: Option<String>,
     /// Recipe that the files on disk were baked from.
     written: Option<SpriteRecipe>,
-    /// Sprite that is shown in place of the files.
+    /// Sprite that is shown instead of the files.
     live: Option<Baked>,
     live_is_full: bool,
     /// Number of the latest coarse bake, while it is in progress.
@@ -71,7 +71,7 @@ impl SpriteEdits {
         let bake_job = self.bake_job.as_mut()?;
         let layout = SpriteLayout { columns: names.columns, rows: names.rows, y_down: names.y_down };
         let known = self.known.entry(names.sprite.clone()).or_insert_with(|| {
-            let mut known = EditedSprite::new(place_of(&names.sprite, folders), layout, SpriteOrigin::Reading);
+            let mut known = EditedSprite::new(image_path(&names.sprite, folders), layout, SpriteOrigin::Reading);
             known.read_sprite(&names.sprite, bake_job);
             known
         });
@@ -99,14 +99,14 @@ impl SpriteEdits {
         let Some((system, name)) = self.wanted.take_if(|_| !document.is_built_in()) else { return Ok(()) };
         let recipe = recipe_of_built_in(&name)?;
         let file = copy(&name, document.path())?;
-        let picture = document.path().with_file_name(&file);
+        let image = document.path().with_file_name(&file);
         if let Some(system) = document.preset.systems.get_mut(system) {
             system.material.detail = detail_of(Path::new(&file)).display().to_string();
             system.material.sprite.clone_from(&file);
             lay_out(&mut system.material, &recipe);
         }
         // The content of the copy is known, so it is not read again.
-        let mut known = EditedSprite::new(picture, recipe.layout(), SpriteOrigin::Recipe(recipe.clone()));
+        let mut known = EditedSprite::new(image, recipe.layout(), SpriteOrigin::Recipe(recipe.clone()));
         known.written = Some(recipe);
         if let Some(origin) = self.known.get(&name) {
             known.findings.clone_from(&origin.findings);
@@ -192,10 +192,10 @@ fn lay_out(names: &mut MaterialSources, recipe: &SpriteRecipe) {
 }
 
 impl EditedSprite {
-    fn new(picture: PathBuf, layout: SpriteLayout, source: SpriteOrigin) -> Self {
-        let stamps = stamps(&picture);
+    fn new(image: PathBuf, layout: SpriteLayout, source: SpriteOrigin) -> Self {
+        let stamps = stamps(&image);
         Self {
-            picture,
+            image,
             layout,
             source,
             stamps,
@@ -213,7 +213,7 @@ impl EditedSprite {
 
     /// Returns the path of its recipe, whether it exists or not.
     pub fn recipe_file(&self) -> PathBuf {
-        recipe_of(&self.picture)
+        recipe_of(&self.image)
     }
 
     /// Uses the recipe beside the image again: it is baked and written.
@@ -225,7 +225,7 @@ impl EditedSprite {
     }
 
     fn read_sprite(&mut self, name: &str, bake_job: &mut SpriteBakeJob) {
-        self.jobs.push(bake_job.read_sprite(name, self.picture.clone(), self.layout));
+        self.jobs.push(bake_job.read_sprite(name, self.image.clone(), self.layout));
     }
 
     fn take(&mut self, name: &str, job: u64, what: BakeResult, document: &mut Document) -> Result<(), Error> {
@@ -273,10 +273,7 @@ impl EditedSprite {
     }
 
     fn follow(&mut self, name: &str, document: &Document, bake_job: &mut SpriteBakeJob, is_held: bool) {
-        if !is_held
-            && self.jobs.is_empty()
-            && std::mem::take(&mut self.is_stale)
-            && self.stamps != stamps(&self.picture)
+        if !is_held && self.jobs.is_empty() && std::mem::take(&mut self.is_stale) && self.stamps != stamps(&self.image)
         {
             return self.read_sprite(name, bake_job);
         }
@@ -299,7 +296,7 @@ impl EditedSprite {
         }
         // A file with an error that the user is about to fix is not overwritten.
         if !is_held && self.full.is_none() && self.broken.is_none() {
-            let order = bake_job.full(wanted.clone(), self.picture.clone(), self.stamps);
+            let order = bake_job.full(wanted.clone(), self.image.clone(), self.stamps);
             self.jobs.push(order.job);
             self.full = Some(order);
         }

@@ -89,11 +89,11 @@ impl SpriteBakeJob {
     }
 
     /// Reads a sprite and its recipe. Returns the number of the job.
-    pub fn read_sprite(&mut self, name: &str, picture: PathBuf, layout: SpriteLayout) -> u64 {
+    pub fn read_sprite(&mut self, name: &str, image: PathBuf, layout: SpriteLayout) -> u64 {
         let job = self.number();
         // Stamps are taken before the files are read, so that a write in between counts as a change.
-        let stamps = stamps(&picture);
-        let read = ReadSprite { name: name.to_owned(), picture, layout };
+        let stamps = stamps(&image);
+        let read = ReadSprite { name: name.to_owned(), image, layout };
         let finish = move |state| FinishedBake { job, what: BakeResult::Read(state, stamps) };
         self.full.submit_portable(read, |_| true, finish);
         job
@@ -107,7 +107,7 @@ impl SpriteBakeJob {
         let rows = recipe.rows.min(frames);
         let small = SpriteRecipe { size: recipe.size.min(size), columns, rows, ..recipe.clone() };
         let layout = small.layout();
-        let bake = BakeSprite { recipe: small, picture: "sprite.png".into() };
+        let bake = BakeSprite { recipe: small, image: "sprite.png".into() };
         self.coarse.submit_portable(
             bake,
             |_| true,
@@ -126,7 +126,7 @@ impl SpriteBakeJob {
     }
 
     /// Bakes a recipe in full and writes it, if the files still have the stamps `before`.
-    pub fn full(&mut self, recipe: SpriteRecipe, picture: PathBuf, before: Stamps) -> BakeOrder {
+    pub fn full(&mut self, recipe: SpriteRecipe, image: PathBuf, before: Stamps) -> BakeOrder {
         let job = self.number();
         let is_stopped = Arc::new(AtomicBool::new(false));
         let frames = Arc::new(AtomicU32::new(0));
@@ -138,15 +138,15 @@ impl SpriteBakeJob {
             frames.store(done, Ordering::Relaxed);
             go_on()
         };
-        let bake = BakeSprite { recipe: recipe.clone(), picture: picture.clone() };
+        let bake = BakeSprite { recipe: recipe.clone(), image: image.clone() };
         self.full.submit_portable(bake, progress, move |baked| {
             let what = match baked {
                 Err(NotBaked::Refused { field, problem, expected }) => {
                     let error = FieldError::from_problem(field, problem, expected);
                     BakeResult::Full(Box::new(FullBake { baked: None, stamps: before, written: Err(error.into()) }))
                 }
-                Ok(baked) if may_finish() && stamps(&picture) == before => {
-                    BakeResult::Full(Box::new(written(recipe, &picture, baked)))
+                Ok(baked) if may_finish() && stamps(&image) == before => {
+                    BakeResult::Full(Box::new(written(recipe, &image, baked)))
                 }
                 _ => BakeResult::GivenUp,
             };
@@ -168,13 +168,13 @@ impl Baked {
             let sheet = decode_png(path, bytes).map(DynamicImage::into_rgba8)?;
             Sprite::from_image(path, &sheet, layout).map_err(Error::from)
         };
-        Ok(Self { sprite: sprite(&files.picture)?, detail: sprite(&files.detail)?, recipe })
+        Ok(Self { sprite: sprite(&files.image)?, detail: sprite(&files.detail)?, recipe })
     }
 }
 
-fn written(recipe: SpriteRecipe, picture: &Path, baked: BakedFiles) -> FullBake {
-    let written = write(picture, &recipe, &baked);
+fn written(recipe: SpriteRecipe, image: &Path, baked: BakedFiles) -> FullBake {
+    let written = write(image, &recipe, &baked);
     let layout = recipe.layout();
-    let shown = Baked::new(recipe, layout, picture, &baked).ok();
-    FullBake { baked: shown, stamps: stamps(picture), written: written.map(|()| baked.findings) }
+    let shown = Baked::new(recipe, layout, image, &baked).ok();
+    FullBake { baked: shown, stamps: stamps(image), written: written.map(|()| baked.findings) }
 }

@@ -49,24 +49,24 @@ pub struct SpriteState {
 }
 
 /// Returns `mine.sprite.json` for `mine.png`.
-pub fn recipe_of(picture: &Path) -> PathBuf {
-    picture.with_extension("sprite.json")
+pub fn recipe_of(image: &Path) -> PathBuf {
+    image.with_extension("sprite.json")
 }
 
 /// Returns `mine.detail.png` for `mine.png`.
-pub fn detail_of(picture: &Path) -> PathBuf {
-    picture.with_extension("detail.png")
+pub fn detail_of(image: &Path) -> PathBuf {
+    image.with_extension("detail.png")
 }
 
-pub fn stamps(picture: &Path) -> Stamps {
-    [picture, &detail_of(picture), &recipe_of(picture)].map(Stamp::of)
+pub fn stamps(image: &Path) -> Stamps {
+    [image, &detail_of(image), &recipe_of(image)].map(Stamp::of)
 }
 
 /// Job that reads a sprite and its recipe, and bakes it to compare both.
 #[derive(Serialize, Deserialize)]
 pub struct ReadSprite {
     pub name: String,
-    pub picture: PathBuf,
+    pub image: PathBuf,
     /// The one in the preset.
     pub layout: SpriteLayout,
 }
@@ -76,7 +76,7 @@ impl PortableJob for ReadSprite {
     type Output = SpriteState;
 
     fn reads(&self) -> Vec<PathBuf> {
-        vec![self.picture.clone(), recipe_of(&self.picture)]
+        vec![self.image.clone(), recipe_of(&self.image)]
     }
 
     fn run(self, _: &dyn Fn(u32) -> bool) -> SpriteState {
@@ -84,7 +84,7 @@ impl PortableJob for ReadSprite {
             Some(found) => {
                 built_in(found).unwrap_or_else(|error| (SpriteOrigin::Missing, vec![error.to_string()], None))
             }
-            None => file(&self.picture, self.layout),
+            None => file(&self.image, self.layout),
         };
         SpriteState { source, findings, broken }
     }
@@ -99,12 +99,12 @@ fn built_in(found: &Builtin) -> Result<Found, Error> {
     Ok((SpriteOrigin::BuiltIn(recipe), findings, None))
 }
 
-fn file(picture: &Path, layout: SpriteLayout) -> Found {
-    let sheet = match read_png(picture) {
+fn file(image: &Path, layout: SpriteLayout) -> Found {
+    let sheet = match read_png(image) {
         Ok(sheet) => sheet.to_rgba8(),
         Err(error) => return (SpriteOrigin::Missing, vec![error.to_string()], None),
     };
-    let recipe = recipe_of(picture);
+    let recipe = recipe_of(image);
     let (source, layout, broken) = match file_io::exists(&recipe).then(|| sprite_recipe(&recipe)) {
         None => (SpriteOrigin::Painted, layout, None),
         Some(Err(error)) => (SpriteOrigin::Painted, layout, Some(error.to_string())),
@@ -114,7 +114,7 @@ fn file(picture: &Path, layout: SpriteLayout) -> Found {
         }
         Some(Ok(recipe)) => (SpriteOrigin::Apart(recipe), layout, None),
     };
-    (source, findings(picture, &sheet, layout), broken)
+    (source, findings(image, &sheet, layout), broken)
 }
 
 /// Returns true if a recipe makes a sheet.
@@ -122,7 +122,7 @@ fn makes(recipe: &SpriteRecipe, sheet: &RgbaImage) -> bool {
     if sheet.dimensions() != (recipe.size * recipe.columns, recipe.size * recipe.rows) {
         return false;
     }
-    recipe.bake(|_| Ok::<_, FieldError>(())).is_ok_and(|baked| baked.picture == *sheet)
+    recipe.bake(|_| Ok::<_, FieldError>(())).is_ok_and(|baked| baked.image == *sheet)
 }
 
 /// Returns the findings of a check of a sheet.
@@ -140,13 +140,13 @@ fn findings(path: &Path, sheet: &RgbaImage, layout: SpriteLayout) -> Vec<String>
 pub struct BakeSprite {
     pub recipe: SpriteRecipe,
     /// Image that it is baked for.
-    pub picture: PathBuf,
+    pub image: PathBuf,
 }
 
 /// Contents of the files of a baked sprite.
 #[derive(Serialize, Deserialize)]
 pub struct BakedFiles {
-    pub picture: Vec<u8>,
+    pub image: Vec<u8>,
     pub detail: Vec<u8>,
     /// Findings of the check of the image, one per line.
     pub findings: Vec<String>,
@@ -179,9 +179,9 @@ impl PortableJob for BakeSprite {
     }
 
     fn run(self, progress: &dyn Fn(u32) -> bool) -> Self::Output {
-        let Self { recipe, picture } = self;
+        let Self { recipe, image } = self;
         let baked = recipe.bake(|frames| if progress(frames) { Ok(()) } else { Err(NotBaked::Stopped) })?;
-        encode(&picture, recipe.layout(), baked).map_err(|error| {
+        encode(&image, recipe.layout(), baked).map_err(|error| {
             let expected = "an image that can be written as PNG";
             FieldError::from_problem("sprite", error.to_string(), expected).into()
         })
@@ -189,19 +189,19 @@ impl PortableJob for BakeSprite {
 }
 
 /// Checks and encodes a baked sprite.
-pub fn encode(picture: &Path, layout: SpriteLayout, baked: BakedSprite) -> Result<BakedFiles, Error> {
+pub fn encode(image: &Path, layout: SpriteLayout, baked: BakedSprite) -> Result<BakedFiles, Error> {
     Ok(BakedFiles {
-        findings: findings(picture, &baked.picture, layout),
-        picture: encode_baked_png(picture, &baked.picture.into())?,
-        detail: encode_baked_png(&detail_of(picture), &baked.detail.into())?,
+        findings: findings(image, &baked.image, layout),
+        image: encode_baked_png(image, &baked.image.into())?,
+        detail: encode_baked_png(&detail_of(image), &baked.detail.into())?,
     })
 }
 
 /// Writes the recipe first, because the images can be made again from it.
-pub fn write(picture: &Path, recipe: &SpriteRecipe, baked: &BakedFiles) -> Result<(), Error> {
-    file_io::write(&recipe_of(picture), recipe.to_json().as_bytes())?;
-    file_io::write(&detail_of(picture), &baked.detail)?;
-    file_io::write(picture, &baked.picture)
+pub fn write(image: &Path, recipe: &SpriteRecipe, baked: &BakedFiles) -> Result<(), Error> {
+    file_io::write(&recipe_of(image), recipe.to_json().as_bytes())?;
+    file_io::write(&detail_of(image), &baked.detail)?;
+    file_io::write(image, &baked.image)
 }
 
 /// Returns the recipe of a built-in sprite.
@@ -214,15 +214,15 @@ pub fn recipe_of_built_in(name: &str) -> Result<SpriteRecipe, Error> {
 pub fn copy(name: &str, preset: &Path) -> Result<String, Error> {
     let folder = preset.parent().unwrap_or(Path::new(""));
     let file = file_io::free_copy_name(name, |file| {
-        let picture = folder.join(file);
-        [picture.clone(), detail_of(&picture), recipe_of(&picture)].iter().all(|path| !file_io::is_taken(path))
+        let image = folder.join(file);
+        [image.clone(), detail_of(&image), recipe_of(&image)].iter().all(|path| !file_io::is_taken(path))
     });
-    let picture = folder.join(&file);
+    let image = folder.join(&file);
     let find = |list| builtin::find(list, name);
     if let Some((sprite, detail)) = find(builtin::SPRITES).zip(find(builtin::DETAILS)) {
-        file_io::write(&recipe_of(&picture), sprite.recipe.as_bytes())?;
-        file_io::write(&detail_of(&picture), detail.bytes)?;
-        file_io::write(&picture, sprite.bytes)?;
+        file_io::write(&recipe_of(&image), sprite.recipe.as_bytes())?;
+        file_io::write(&detail_of(&image), detail.bytes)?;
+        file_io::write(&image, sprite.bytes)?;
     }
     Ok(file)
 }

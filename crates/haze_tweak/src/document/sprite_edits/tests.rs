@@ -16,7 +16,7 @@ use haze_preset::{CompressionEffort, Preset, write_png};
 
 use super::sprite_source::recipe_of_built_in;
 use crate::window::Window;
-use crate::window::testing::{brightness, picture, window};
+use crate::window::testing::{brightness, screenshot, window};
 use haze_author::light_angles::Angles;
 
 const LONG: Duration = Duration::from_secs(30);
@@ -42,8 +42,8 @@ impl Folder {
         material.columns = 2;
         folder.write_preset(&preset);
         std::fs::write(folder.path("mine.sprite.json"), small().to_json()).unwrap();
-        let BakedSprite { picture, detail } = baked(&small());
-        write_png(&folder.path("mine.png"), &picture.into(), CompressionEffort::Quick).unwrap();
+        let BakedSprite { image, detail } = baked(&small());
+        write_png(&folder.path("mine.png"), &image.into(), CompressionEffort::Quick).unwrap();
         write_png(&folder.path("mine.detail.png"), &detail.into(), CompressionEffort::Quick).unwrap();
         folder
     }
@@ -68,7 +68,7 @@ impl Folder {
     fn is_baked(&self) -> bool {
         let recipe = self.recipe();
         let sprite = self.sprite();
-        sprite == Sprite::from_image("".as_ref(), &baked(&recipe).picture, recipe.layout()).ok()
+        sprite == Sprite::from_image("".as_ref(), &baked(&recipe).image, recipe.layout()).ok()
     }
 
     fn open(&self) -> Harness<'static, Window> {
@@ -125,7 +125,7 @@ fn used(harness: &Harness<'_, Window>) -> Sprite {
 
 fn shown(harness: &mut Harness<'_, Window>, part: &str) -> f64 {
     let part = harness.get_by_label(part).rect();
-    brightness(&picture(harness), part)
+    brightness(&screenshot(harness), part)
 }
 
 fn undo_name(harness: &Harness<'_, Window>) -> Option<String> {
@@ -144,10 +144,10 @@ fn a_slider_shows_a_coarse_bake_then_the_full_one_which_is_written_and_undone() 
     let sprite = used(&harness);
     let brightness = [shown(&mut harness, "viewport"), shown(&mut harness, "Flipbook")];
     let rect = slider(&harness, "Erosion").rect();
-    let at = |share: f32| rect.left_center() + Vec2::new(share * rect.width(), 0.0);
+    let at = |fraction: f32| rect.left_center() + Vec2::new(fraction * rect.width(), 0.0);
     harness.drag_at(at(0.25));
-    for share in [0.3, 0.5, 0.7] {
-        harness.hover_at(at(share));
+    for fraction in [0.3, 0.5, 0.7] {
+        harness.hover_at(at(fraction));
         harness.step();
     }
     until(&mut harness, |harness| used(harness).size() == 64 && !harness.state().session.sprites.is_baking());

@@ -90,9 +90,9 @@ fn an_image_is_saved_beside_the_preset_without_replacing_files() {
     let names = bench.names();
     assert_eq!(names.len(), 2, "{names:?}");
     assert!(names.iter().all(|name| name.ends_with("s.png") || name.ends_with("s_2.png")), "{names:?}");
-    let picture = haze_core::assets::image::read_png(&bench.folder.path().join(&names[0])).unwrap();
+    let image = haze_core::assets::image::read_png(&bench.folder.path().join(&names[0])).unwrap();
     let seen = 36.0 * bench.window.state().session.view.aspect;
-    assert_eq!((picture.width(), picture.height()), (seen.round() as u32, 36));
+    assert_eq!((image.width(), image.height()), (seen.round() as u32, 36));
 }
 
 #[test]
@@ -105,8 +105,8 @@ fn frames_are_written_as_sequence_flipbook_and_gif() {
     assert!(names.iter().any(|name| name.ends_with(".gif")), "{names:?}");
     let names = bench.make(ExportKind::Flipbook);
     let name = names.iter().find(|name| name.contains("flipbook")).unwrap();
-    let picture = haze_core::assets::image::read_png(&bench.folder.path().join(name)).unwrap();
-    assert_eq!((picture.width(), picture.height()), (8 * 64, 4 * 36));
+    let image = haze_core::assets::image::read_png(&bench.folder.path().join(name)).unwrap();
+    assert_eq!((image.width(), image.height()), (8 * 64, 4 * 36));
 }
 
 #[test]
@@ -164,8 +164,8 @@ fn files_and_alpha_are_chosen_in_the_dialog() {
     choose(&mut bench, "Premultiplied");
     choose(&mut bench, "PNG 16");
     let names = bench.make(ExportKind::Image);
-    let picture = haze_core::assets::image::read_png(&bench.folder.path().join(&names[0])).unwrap();
-    assert_eq!(picture.color(), image::ColorType::Rgba16);
+    let image = haze_core::assets::image::read_png(&bench.folder.path().join(&names[0])).unwrap();
+    assert_eq!(image.color(), image::ColorType::Rgba16);
     let format = bench.window.state().export_job.options.format;
     assert_eq!(format.alpha, Alpha::Premultiplied);
     choose(&mut bench, "EXR");
@@ -217,7 +217,7 @@ fn a_long_export_shows_progress_and_stops_and_a_new_sheet_replaces_the_old() {
         bench.until(|window| window.export_job.progress().is_none());
         bench.window.run_steps(3);
         let part = bench.window.get_by_label("Image of the sheet").rect();
-        testing::brightness(&testing::picture(&mut bench.window), part)
+        testing::brightness(&testing::screenshot(&mut bench.window), part)
     };
     let dark = shown(-3.0);
     let bright = shown(2.0);
@@ -243,8 +243,8 @@ fn sheets_are_shown_and_saved_on_request() {
     {
         bench.make(product);
         bench.until(|window| window.export_job.sheet.is_some());
-        let Sheet { picture, .. } = bench.window.state_mut().export_job.sheet.take().unwrap();
-        assert!(picture.width() > 64 && count > 0);
+        let Sheet { image, .. } = bench.window.state_mut().export_job.sheet.take().unwrap();
+        assert!(image.width() > 64 && count > 0);
     }
 }
 
@@ -271,14 +271,14 @@ fn the_row_menu_makes_the_same_sheet_as_the_export_dialog() {
     let path = "camera.exposure";
     bench.make(ExportKind::Values(path.into()));
     bench.until(|window| window.export_job.sheet.is_some());
-    let Sheet { picture: made, .. } = bench.window.state_mut().export_job.sheet.take().unwrap();
+    let Sheet { image: made, .. } = bench.window.state_mut().export_job.sheet.take().unwrap();
     bench.window.state_mut().export_job.is_open = false;
     bench.window.run_steps(3);
     testing::row_menu(&mut bench.window, "Exposure");
     bench.window.get_by_label("Five values side by side").click();
     bench.window.run_steps(2);
     bench.until(|window| window.export_job.sheet.is_some());
-    let Sheet { picture: sheet, .. } = bench.window.state_mut().export_job.sheet.take().unwrap();
+    let Sheet { image: sheet, .. } = bench.window.state_mut().export_job.sheet.take().unwrap();
     assert!(sheet == made, "another sheet");
     // The same for a row that several settings make.
     testing::row_menu(&mut bench.window, "Thickness");
@@ -300,8 +300,8 @@ fn the_button_beside_a_name_makes_a_sheet() {
         let name = testing::row_name(&bench.window, name);
         bench.window.hover_at(name);
         bench.window.run_steps(2);
-        let place = bench.window.get_by_label(button).rect().center();
-        testing::click_at(&mut bench.window, place, PointerButton::Primary);
+        let position = bench.window.get_by_label(button).rect().center();
+        testing::click_at(&mut bench.window, position, PointerButton::Primary);
         bench.until(|window| window.export_job.sheet.is_some());
         let kind = bench.window.state().export_job.sheet.as_ref().unwrap().kind.clone();
         // Escape closes the sheet and nothing below it.

@@ -141,16 +141,13 @@ fn an_unreadable_file_is_reported_once_and_the_document_stays() {
     bench.change(1.5);
     let big = bench.path("big.json");
     fs::File::create(&big).unwrap().set_len(10 << 30).unwrap();
-    let picture = bench.path("picture.png");
-    fs::write(&picture, "no picture").unwrap();
+    let image = bench.path("image.png");
+    fs::write(&image, "no image").unwrap();
     let folder = bench.folder.path().to_owned();
     let gone = bench.path("gone.json");
-    for (path, expected) in [
-        (&folder, "a folder, not a file"),
-        (&big, "10737418240 bytes"),
-        (&picture, "not a PNG"),
-        (&gone, "No such file"),
-    ] {
+    for (path, expected) in
+        [(&folder, "a folder, not a file"), (&big, "10737418240 bytes"), (&image, "not a PNG"), (&gone, "No such file")]
+    {
         bench.drop_file(path);
         bench.until(|bench| bench.said().contains(expected));
         assert!(bench.window.state().file_actions.waiting.is_none());

@@ -13,7 +13,7 @@ use tempfile::TempDir;
 use super::*;
 use crate::files::export_job::ExportKind;
 use crate::window::Window;
-use crate::window::testing::{brightness, picture, window_with};
+use crate::window::testing::{brightness, screenshot, window_with};
 
 #[cfg(target_os = "linux")]
 mod soak;
@@ -78,10 +78,10 @@ impl Bench {
     /// Returns the brightness of the viewport.
     fn shown(&mut self) -> f64 {
         let part = self.window.get_by_label("viewport").rect();
-        brightness(&picture(&mut self.window), part)
+        brightness(&screenshot(&mut self.window), part)
     }
 
-    fn pictures(&mut self) -> MaterialAssets {
+    fn images(&mut self) -> MaterialAssets {
         let preset = self.session().document.preset.clone();
         self.session().loaded_materials.of(&preset).remove(0)
     }
@@ -92,8 +92,8 @@ type Way<'a> = (&'a str, &'a dyn Fn(&Path));
 
 /// Writes a ramp of a single gray.
 fn write_ramp(folder: &Path, gray: u8) {
-    let picture = RgbImage::from_pixel(64, 1, Rgb([gray; 3]));
-    haze_preset::write_png(&folder.join("mine.png"), &picture.into(), haze_preset::CompressionEffort::Quick).unwrap();
+    let image = RgbImage::from_pixel(64, 1, Rgb([gray; 3]));
+    haze_preset::write_png(&folder.join("mine.png"), &image.into(), haze_preset::CompressionEffort::Quick).unwrap();
 }
 
 const SIZE: Vec2 = Vec2::new(640.0, 400.0);
@@ -102,12 +102,12 @@ const SIZE: Vec2 = Vec2::new(640.0, 400.0);
 fn a_saved_ramp_is_shown_and_a_broken_one_is_reported_until_it_is_fixed() {
     let mut bench = Bench::new(SIZE);
     let before = bench.shown();
-    let bright = bench.pictures();
+    let bright = bench.images();
     write_ramp(bench.folder.path(), 20);
-    bench.until(|bench| !bench.pictures().shares_memory(&bright));
+    bench.until(|bench| !bench.images().shares_memory(&bright));
     let dark = bench.shown();
     assert!(dark < before - 3.0, "{before} {dark}");
-    fs::write(bench.path("mine.png"), "no picture").unwrap();
+    fs::write(bench.path("mine.png"), "no image").unwrap();
     bench.until(|bench| bench.said().is_some());
     let said = bench.said().unwrap();
     assert!(
@@ -147,17 +147,17 @@ fn a_saved_ramp_is_shown_and_a_broken_one_is_reported_until_it_is_fixed() {
 fn a_shared_ramp_is_reloaded() {
     let mut bench = Bench::new(SIZE);
     let team = bench.path("team");
-    let own = bench.pictures();
+    let own = bench.images();
     fs::create_dir(&team).unwrap();
     write_ramp(&team, 90);
     fs::rename(team.join("mine.png"), team.join("theirs.png")).unwrap();
     bench.session().assets = Some(team.clone());
     bench.session().document.preset.systems[0].material.diffuse_ramp = "theirs.png".into();
-    bench.until(|bench| !bench.pictures().shares_memory(&own));
-    let theirs = bench.pictures();
+    bench.until(|bench| !bench.images().shares_memory(&own));
+    let theirs = bench.images();
     write_ramp(&team, 20);
     fs::rename(team.join("mine.png"), team.join("theirs.png")).unwrap();
-    bench.until(|bench| !bench.pictures().shares_memory(&theirs));
+    bench.until(|bench| !bench.images().shares_memory(&theirs));
     assert_eq!(bench.said(), None);
 }
 
@@ -257,8 +257,8 @@ fn exports_use_the_shaders_of_the_watched_folder() {
         bench.until(|bench| bench.window.state().export_job.progress().is_none());
         bench.window.run_steps(2);
         let said = bench.session().messages.latest().unwrap().text.clone();
-        let picture = haze_core::assets::image::read_png(Path::new(said.strip_prefix("Exported ").unwrap())).unwrap();
-        picture.into_rgb8().as_raw().iter().map(|byte| u32::from(*byte)).sum::<u32>()
+        let image = haze_core::assets::image::read_png(Path::new(said.strip_prefix("Exported ").unwrap())).unwrap();
+        image.into_rgb8().as_raw().iter().map(|byte| u32::from(*byte)).sum::<u32>()
     };
     let before = export(&mut bench);
     let dark = COLOR.replace("return min(light,", "return min(light * 0.25,");
@@ -274,13 +274,13 @@ fn exports_use_the_shaders_of_the_watched_folder() {
 fn latencies(bench: &mut Bench, count: u32) -> (Vec<u128>, Vec<u128>) {
     let (mut loaded, mut seen): (Vec<_>, Vec<_>) = (0..count)
         .map(|index| {
-            let before = bench.pictures();
-            let shown = picture(&mut bench.window);
+            let before = bench.images();
+            let shown = screenshot(&mut bench.window);
             write_ramp(bench.folder.path(), if index % 2 == 0 { 20 } else { 200 });
             let start = Instant::now();
-            bench.until(|bench| !bench.pictures().shares_memory(&before));
+            bench.until(|bench| !bench.images().shares_memory(&before));
             let loaded = start.elapsed().as_millis();
-            assert!(picture(&mut bench.window) != shown);
+            assert!(screenshot(&mut bench.window) != shown);
             (loaded, start.elapsed().as_millis())
         })
         .unzip();

@@ -294,14 +294,14 @@ mod tests {
             harness.step();
             let _ = harness.render().unwrap();
         }
-        // A place without widgets.
-        let place = egui::pos2(400.0, 500.0);
+        // A position without widgets.
+        let position = egui::pos2(400.0, 500.0);
         let background = harness.render().unwrap().get_pixel(400, 500).0;
-        harness.hover_at(place);
+        harness.hover_at(position);
         for pressed in [true, false] {
             let modifiers = Modifiers::NONE;
             harness.event(egui::Event::PointerButton {
-                pos: place,
+                pos: position,
                 button: egui::PointerButton::Primary,
                 pressed,
                 modifiers,

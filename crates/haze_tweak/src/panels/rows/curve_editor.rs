@@ -9,7 +9,7 @@ const HEIGHT: f32 = 64.0;
 /// Distance at which the pointer is on a point, points of the screen.
 const REACH: f32 = 10.0;
 const RADIUS: f32 = 4.0;
-/// Least distance between two points, as a share of the width.
+/// Least distance between two points, as a fraction of the width.
 const GAP: f32 = 0.005;
 /// Highest values of the plot.
 const TOPS: [f32; 5] = [1.0, 2.0, 4.0, 8.0, f32::INFINITY];
@@ -76,7 +76,7 @@ struct Plot {
 }
 
 impl Plot {
-    fn place(&self, point: glam::Vec2) -> Pos2 {
+    fn position(&self, point: glam::Vec2) -> Pos2 {
         let height = (point.y / self.top.max(1.0e-6)).min(1.0);
         pos2(self.rect.left() + point.x * self.rect.width(), self.rect.bottom() - height * self.rect.height())
     }
@@ -90,7 +90,7 @@ impl Plot {
     }
 
     fn nearest(&self, points: &[glam::Vec2], at: Pos2) -> Option<usize> {
-        let distance = |index: &usize| self.place(points[*index]).distance(at);
+        let distance = |index: &usize| self.position(points[*index]).distance(at);
         (0..points.len()).min_by(|a, b| distance(a).total_cmp(&distance(b))).filter(|index| distance(index) <= REACH)
     }
 }
@@ -102,20 +102,20 @@ fn paint(ui: &Ui, plot: &Plot, value: &Curve, hover: Option<Pos2>) {
     let painter = ui.painter();
     let frame = plot.rect.expand(RADIUS + 1.0);
     painter.rect_filled(frame, 2.0, visuals.extreme_bg_color);
-    let line = |value: f32| plot.place(glam::Vec2::new(0.0, value)).y;
+    let line = |value: f32| plot.position(glam::Vec2::new(0.0, value)).y;
     painter.hline(plot.rect.x_range(), line(1.0), Stroke::new(1.0, faint.gamma_multiply(0.4)));
     let font = egui::TextStyle::Small.resolve(ui.style());
     let top = format!("{}", plot.top);
     painter.text(frame.right_top() + Vec2::new(-3.0, 2.0), egui::Align2::RIGHT_TOP, top, font, faint);
-    let places: Vec<Pos2> = value.points().iter().map(|point| plot.place(*point)).collect();
-    let (Some(first), Some(last)) = (places.first(), places.last()) else { return };
+    let positions: Vec<Pos2> = value.points().iter().map(|point| plot.position(*point)).collect();
+    let (Some(first), Some(last)) = (positions.first(), positions.last()) else { return };
     let ends = [pos2(plot.rect.left(), first.y), pos2(plot.rect.right(), last.y)];
-    let along = [&ends[..1], &places, &ends[1..]].concat();
+    let along = [&ends[..1], &positions, &ends[1..]].concat();
     painter.add(egui::Shape::line(along, Stroke::new(1.5, ink)));
-    for place in places {
-        let is_near = hover.is_some_and(|at| at.distance(place) <= REACH);
+    for position in positions {
+        let is_near = hover.is_some_and(|at| at.distance(position) <= REACH);
         let color = if is_near { visuals.selection.bg_fill } else { ink };
-        painter.circle_filled(place, if is_near { RADIUS + 1.0 } else { RADIUS }, color);
+        painter.circle_filled(position, if is_near { RADIUS + 1.0 } else { RADIUS }, color);
     }
 }
 

@@ -4,8 +4,8 @@ pub mod color_popup;
 pub mod copy_icon;
 mod curve_editor;
 pub mod icon_button;
+pub mod image_gallery;
 pub mod key_mark;
-pub mod picture_gallery;
 pub mod setting_rows;
 pub mod soft_fade_plot;
 pub mod value_control;
@@ -19,9 +19,9 @@ use crate::document::display_names::display_name;
 use icon_button::Icon;
 use key_mark::{KeyMark, KeyState};
 
-/// Width of the names, points, and their largest share of a row.
+/// Width of the names, points, and their largest fraction of a row.
 const NAME: f32 = 118.0;
-const SHARE: f32 = 0.36;
+const NAME_FRACTION: f32 = 0.36;
 /// Width of the mark before a name, points.
 const MARK: f32 = 12.0;
 
@@ -77,7 +77,7 @@ impl Row<'_> {
                     request = Some(RowRequest::CopySecond);
                 }
             }
-            let place = ui.allocate_ui_with_layout(
+            let label = ui.allocate_ui_with_layout(
                 egui::vec2(width, height),
                 egui::Layout::left_to_right(egui::Align::Center),
                 |ui| {
@@ -87,14 +87,14 @@ impl Row<'_> {
                     ui.add(egui::Label::new(text).truncate().sense(egui::Sense::click()))
                 },
             );
-            let name = place.inner.on_hover_text(self.hint());
-            let place = place.response.rect;
+            let name = label.inner.on_hover_text(self.hint());
+            let label = label.response.rect;
             if name.double_clicked() {
                 request = Some(RowRequest::Reset);
             }
             name.context_menu(|ui| request = self.menu(ui).or(request));
-            let is_hovered = ui.rect_contains_pointer(place);
-            let mut corner = place.with_min_x(place.right() - height);
+            let is_hovered = ui.rect_contains_pointer(label);
+            let mut corner = label.with_min_x(label.right() - height);
             if let Some(key) = self.key.filter(|_| has_keys || is_hovered && self.reason_without_effect.is_none()) {
                 if key_mark::button(ui, corner, name.id.with("key"), key, &display_name(self.name)) {
                     request = Some(RowRequest::Key);
@@ -153,7 +153,7 @@ impl Row<'_> {
 fn mark(ui: &mut Ui, sign: Option<(&str, &str)>, name: impl Fn() -> String) -> bool {
     let size = egui::vec2(MARK, ui.spacing().interact_size.y);
     let layout = egui::Layout::left_to_right(egui::Align::Center);
-    let place = ui.allocate_ui_with_layout(size, layout, |ui| {
+    let label = ui.allocate_ui_with_layout(size, layout, |ui| {
         ui.set_min_size(size);
         let (sign, tooltip) = sign?;
         let mark = egui::Button::new(egui::RichText::new(sign).strong()).frame(false).small();
@@ -161,11 +161,11 @@ fn mark(ui: &mut Ui, sign: Option<(&str, &str)>, name: impl Fn() -> String) -> b
         mark.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, name()));
         Some(mark.clicked())
     });
-    place.inner == Some(true)
+    label.inner == Some(true)
 }
 
 fn name_width(ui: &Ui) -> f32 {
-    NAME.min(SHARE * ui.available_width())
+    NAME.min(NAME_FRACTION * ui.available_width())
 }
 
 /// Draws a note below a control. `marks`: number of marks that rows have before their names.

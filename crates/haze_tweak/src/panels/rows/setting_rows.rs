@@ -10,12 +10,12 @@ use haze_core::settings::{BackdropKind, Choice, Curve, FieldValue, FieldVisitor,
 use haze_preset::backdrop_endings;
 
 use super::curve_editor;
+use super::image_gallery::gallery;
 use super::key_mark::KeyMarks;
-use super::picture_gallery::gallery;
 use super::value_text::shown_value;
 use super::{Row, RowRequest, value_control};
 use crate::document::display_names::display_name;
-use crate::session::picture_thumbnails::PictureThumbnails;
+use crate::session::image_thumbnails::ImageThumbnails;
 use crate::session::slider_range::UsualRange;
 
 /// Step on the path to a field: its name, and its index if it is in a list.
@@ -25,7 +25,7 @@ pub type FieldStep = (&'static str, Option<usize>);
 pub struct RowContext<'a> {
     pub tooltips: &'a Tooltips,
     /// Thumbnails of images.
-    pub thumbnails: &'a PictureThumbnails,
+    pub thumbnails: &'a ImageThumbnails,
     /// Paths of the fields that differ from the preset on disk.
     pub changed: &'a HashSet<String>,
     /// Values of the second image's settings that differ, by path; `None` if it has no settings of its own.

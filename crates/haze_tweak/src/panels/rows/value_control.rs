@@ -246,8 +246,8 @@ pub fn choice<'t>(
     let combo = egui::ComboBox::from_id_salt(salt).selected_text(selected).width(ui.available_width() - 8.0);
     let response = combo
         .show_ui(ui, |ui| {
-            for (place, name) in names.iter().enumerate() {
-                let entry = ui.selectable_value(&mut index, place, display_name(name));
+            for (position, name) in names.iter().enumerate() {
+                let entry = ui.selectable_value(&mut index, position, display_name(name));
                 if let Some(tooltip) = tooltip(name) {
                     entry.on_hover_text(tooltip);
                 }

@@ -11,9 +11,9 @@ use haze_author::light_angles::{Angles, MAX_ELEVATION, from_angles};
 /// Largest side of the image in points and in pixels. The image is small, because the CPU draws it.
 const SIDE: f32 = 300.0;
 const MAX_PIXELS: f32 = 256.0;
-/// Least side in points, and largest share of the tab's height, which leaves room for the recipe.
+/// Least side in points, and largest fraction of the tab's height, which leaves room for the recipe.
 const MIN_SIDE: f32 = 96.0;
-const SHARE: f32 = 0.42;
+const SIDE_FRACTION: f32 = 0.42;
 /// Rotation of the light, degrees per point of a drag.
 const DRAG: f32 = 0.6;
 
@@ -38,8 +38,8 @@ pub fn panel(
     });
     // In a scroll area the available height is unlimited, so the visible part counts.
     let height = ui.available_height().min(ui.clip_rect().height());
-    let side = ui.available_width().min(SIDE).min((SHARE * height).max(MIN_SIDE));
-    ui.vertical_centered(|ui| picture(ui, look, painted, side, material, settings));
+    let side = ui.available_width().min(SIDE).min((SIDE_FRACTION * height).max(MIN_SIDE));
+    ui.vertical_centered(|ui| image(ui, look, painted, side, material, settings));
     time(ui, look, material.sprite.frame_count());
     if look.channel == SpriteChannel::Lit {
         light(ui, look);
@@ -49,7 +49,7 @@ pub fn panel(
     }
 }
 
-fn picture(
+fn image(
     ui: &mut Ui,
     look: &mut SpriteView,
     painted: &mut Option<SpritePreview>,

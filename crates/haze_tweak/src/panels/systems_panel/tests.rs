@@ -10,7 +10,7 @@ use haze_preset::{MAX_SYSTEMS, Preset};
 
 use crate::document::keyframes::add_key;
 use crate::window::Window;
-use crate::window::testing::{brightness, picture, window};
+use crate::window::testing::{brightness, screenshot, window};
 
 /// Opens a window that is small, so that its images are drawn fast.
 fn open(preset: &str) -> Harness<'static, Window> {
@@ -65,7 +65,7 @@ fn selected(harness: &Harness<'_, Window>) -> usize {
 /// Brightness of the image.
 fn shown(harness: &mut Harness<'_, Window>) -> f64 {
     let part = harness.get_by_label("viewport").rect();
-    brightness(&picture(harness), part)
+    brightness(&screenshot(harness), part)
 }
 
 /// An edit; the names, tracks and selection after it, and the name of its step.
@@ -90,12 +90,12 @@ fn every_edit_is_one_step_and_keyframes_follow() {
         (|harness| run(harness, "sparks", "Move Up"), &["sparks", "fire"], &[0], 0, "System moved"),
         (|harness| run(harness, "sparks", "Delete"), &["fire"], &[], 0, "System removed"),
     ];
-    for (edit, expected, places, index, step) in cases {
+    for (edit, expected, positions, index, step) in cases {
         edit(&mut harness);
         let after = preset(&harness).clone();
         after.validate().unwrap();
         assert_eq!(names(&harness), expected, "{step}");
-        let settings: Vec<_> = places.iter().map(|place| format!("systems[{place}].settings.boost")).collect();
+        let settings: Vec<_> = positions.iter().map(|position| format!("systems[{position}].settings.boost")).collect();
         assert_eq!((tracks(&harness), selected(&harness)), (settings, index), "{step}");
         assert_eq!(harness.state().session.document.history().undo_name(), Some(step));
         key(&mut harness, Modifiers::COMMAND, Key::Z);
@@ -214,7 +214,7 @@ fn the_list_fits_and_scrolls_in_small_and_large_windows() {
         harness.run_steps(20);
         fits(&harness, "Add system");
         assert!(harness.get_by_label("Add system").accesskit_node().is_disabled());
-        // The list takes no more than its share.
+        // The list takes no more than its fraction.
         let slider = harness.get_all_by_label("Technique").next().map(|node| node.rect());
         assert!(slider.is_some_and(|rect| rect.top() < 0.6 * size.y), "{slider:?}");
     }
@@ -232,7 +232,7 @@ fn write_images_of_the_list() {
                 std::thread::sleep(Duration::from_millis(50));
                 harness.step();
             }
-            picture(harness).save(Path::new(&folder).join(format!("{name}_{}.png", size.x))).unwrap();
+            screenshot(harness).save(Path::new(&folder).join(format!("{name}_{}.png", size.x))).unwrap();
         };
         save(&mut harness, "list");
         click(&mut harness, "Add system");

@@ -153,9 +153,9 @@ struct Plot<'a> {
 }
 
 impl Plot<'_> {
-    fn place(&self, time: f32, value: f32) -> Pos2 {
-        let share = (value - self.span.start()) / (self.span.end() - self.span.start()).max(1.0e-9);
-        pos2(self.axis.x(time), self.rect.bottom() - share * self.rect.height())
+    fn position(&self, time: f32, value: f32) -> Pos2 {
+        let fraction = (value - self.span.start()) / (self.span.end() - self.span.start()).max(1.0e-9);
+        pos2(self.axis.x(time), self.rect.bottom() - fraction * self.rect.height())
     }
 
     /// Value at a height, rounded to a thousandth of the plot.
@@ -168,8 +168,11 @@ impl Plot<'_> {
 
     fn nearest(&self, track: &Track, at: Pos2, numbers: &dyn Fn(&KeyValue) -> Vec<f32>) -> Option<Dragged> {
         let points = track.keys.iter().enumerate().flat_map(|(index, key)| {
-            let places = numbers(&key.value).into_iter().map(|value| self.place(key.time, value));
-            places.enumerate().map(move |(component, place)| (index, component, place - at)).collect::<Vec<_>>()
+            let positions = numbers(&key.value).into_iter().map(|value| self.position(key.time, value));
+            positions
+                .enumerate()
+                .map(move |(component, position)| (index, component, position - at))
+                .collect::<Vec<_>>()
         });
         let nearest = points.min_by(|a, b| a.2.length().total_cmp(&b.2.length()));
         let (key, component, offset) = nearest.filter(|(.., offset)| offset.length() <= REACH)?;
@@ -189,7 +192,7 @@ impl Plot<'_> {
         let values: Vec<_> = values.iter().map(numbers).collect();
         let count = values.first().map_or(0, Vec::len);
         for component in 0..count {
-            let points = times.iter().zip(&values).map(|(time, value)| self.place(*time, value[component]));
+            let points = times.iter().zip(&values).map(|(time, value)| self.position(*time, value[component]));
             let stroke = Stroke::new(1.5, self.color(ui, component, count).gamma_multiply(opacity));
             painter.add(Shape::line(points.collect(), stroke));
         }
@@ -206,9 +209,9 @@ impl Plot<'_> {
         painter.vline(now, self.rect.y_range(), Stroke::new(1.0, ui.visuals().selection.stroke.color));
         for key in &track.keys {
             for value in numbers(&key.value) {
-                let place = self.place(key.time, value);
-                let is_near = hover.is_some_and(|at| at.distance(place) <= REACH);
-                painter.circle_filled(place, if is_near { RADIUS + 1.5 } else { RADIUS }, color());
+                let position = self.position(key.time, value);
+                let is_near = hover.is_some_and(|at| at.distance(position) <= REACH);
+                painter.circle_filled(position, if is_near { RADIUS + 1.5 } else { RADIUS }, color());
             }
         }
         if track.keys.iter().any(|key| matches!(key.value, KeyValue::Number(_) | KeyValue::Vector(_))) {

@@ -47,8 +47,8 @@ pub fn lane(ui: &mut Ui, session: &mut Session, setting: &str, axis: &TimeAxis) 
     let here = keyframes::key_at(&track, axis.now);
     for (index, key) in track.keys.iter().enumerate() {
         let center = pos2(axis.x(key.time), rect.center().y);
-        let place = Rect::from_center_size(center, egui::vec2(2.0 * RADIUS + 3.0, ROW));
-        let mark = ui.interact(place, ui.scope_id().with((setting, index)), Sense::click_and_drag());
+        let mark_rect = Rect::from_center_size(center, egui::vec2(2.0 * RADIUS + 3.0, ROW));
+        let mark = ui.interact(mark_rect, ui.scope_id().with((setting, index)), Sense::click_and_drag());
         let text = format!("Keyframe {} of {title} at {:.2} s", index + 1, key.time);
         mark.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &text));
         let is_here = here == Some(index);

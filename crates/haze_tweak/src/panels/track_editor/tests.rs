@@ -48,8 +48,8 @@ fn drag(harness: &mut Harness<'_, Window>, from: Pos2, to: Pos2) {
     let button = |pos, pressed| egui_button(pos, PointerButton::Primary, pressed);
     harness.event(button(from, true));
     harness.run_steps(2);
-    for share in [0.3, 0.7, 1.0] {
-        harness.event(eframe::egui::Event::PointerMoved(from + share * (to - from)));
+    for fraction in [0.3, 0.7, 1.0] {
+        harness.event(eframe::egui::Event::PointerMoved(from + fraction * (to - from)));
         harness.run_steps(2);
     }
     harness.event(button(to, false));
@@ -248,10 +248,10 @@ fn nothing_is_clipped_in_the_smallest_window() {
     set_key(&mut session.document.preset, INTENSITY, 0.0, KeyValue::Number(1.0));
     session.view.tracks.select(INTENSITY);
     harness.run_steps(5);
-    let picture = harness.get_by_label("viewport").rect();
+    let image = harness.get_by_label("viewport").rect();
     let lane = harness.get_by_label_contains("Keyframes of Intensity").rect();
-    assert!(lane.right() <= size.x && lane.top() >= picture.bottom(), "{lane} {picture}");
-    assert!(picture.height() > 80.0, "{picture}");
+    assert!(lane.right() <= size.x && lane.top() >= image.bottom(), "{lane} {image}");
+    assert!(image.height() > 80.0, "{image}");
 }
 
 fn curve(harness: &Harness<'_, Window>) -> Rect {
@@ -291,8 +291,8 @@ fn seconds_are_written_along_the_ruler_and_a_click_goes_there() {
     let mut harness = rising();
     let ruler = harness.get_by_label("Time ruler").rect();
     assert!(ruler.bottom() <= keyframe(&harness, 1).top() + 1.0, "{ruler}");
-    let place = pos2(keyframe(&harness, 2).center().x, ruler.center().y);
-    click_at(&mut harness, place, PointerButton::Primary);
+    let position = pos2(keyframe(&harness, 2).center().x, ruler.center().y);
+    click_at(&mut harness, position, PointerButton::Primary);
     assert!((harness.state().session.playback.time - 4.0).abs() < 0.02);
     let axis = |end: f64, width: f32| {
         let mut session = crate::session::Session::open(std::path::Path::new("column"), None).unwrap();

@@ -27,13 +27,13 @@ impl TimeAxis {
     }
 
     pub fn x(&self, time: f32) -> f32 {
-        let share = (time - self.range.start()) / (self.range.end() - self.range.start()).max(1.0e-3);
-        self.left + MARGIN + share * (self.width - 2.0 * MARGIN)
+        let fraction = (time - self.range.start()) / (self.range.end() - self.range.start()).max(1.0e-3);
+        self.left + MARGIN + fraction * (self.width - 2.0 * MARGIN)
     }
 
     pub fn time(&self, x: f32) -> f32 {
-        let share = ((x - self.left - MARGIN) / (self.width - 2.0 * MARGIN).max(1.0)).clamp(0.0, 1.0);
-        self.range.start() + share * (self.range.end() - self.range.start())
+        let fraction = ((x - self.left - MARGIN) / (self.width - 2.0 * MARGIN).max(1.0)).clamp(0.0, 1.0);
+        self.range.start() + fraction * (self.range.end() - self.range.start())
     }
 
     /// Returns the times of labels, at least `gap` points apart, and the number of their decimals.

@@ -126,9 +126,9 @@ fn a_drag_within_one_long_frame_moves_as_far_as_a_slow_one() {
         let mut fast = lit(Light::default());
         let from = viewport(&slow).center() + vec2(-180.0, 60.0);
         let before = camera(&slow);
-        let place = |moved: f32| from + vec2(moved, 0.2 * moved);
-        drag(&mut slow, button, &[0.0, 20.0, 46.0, 100.0, 186.0].map(place));
-        flick(&mut fast, button, &[0.0, 46.0, 186.0].map(place));
+        let position = |moved: f32| from + vec2(moved, 0.2 * moved);
+        drag(&mut slow, button, &[0.0, 20.0, 46.0, 100.0, 186.0].map(position));
+        flick(&mut fast, button, &[0.0, 46.0, 186.0].map(position));
         let slow = camera(&slow);
         let fast = camera(&fast);
         assert!(

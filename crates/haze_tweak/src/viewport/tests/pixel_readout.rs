@@ -7,7 +7,7 @@ use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use crate::session::comparison::CompareWith;
 use crate::session::ramp_survey::{self, TwoAxisRamp};
 use crate::window::Window;
-use crate::window::testing::{brightness, picture, window};
+use crate::window::testing::{brightness, screenshot, window};
 
 const SIZE: Vec2 = Vec2::new(1000.0, 640.0);
 
@@ -20,7 +20,7 @@ fn smoke(harness: &Harness<'_, Window>) -> Pos2 {
 fn wait_for(harness: &mut Harness<'_, Window>, is_there: impl Fn(&Harness<'_, Window>) -> bool) {
     for _ in 0..300 {
         // Only an image that is drawn is read back.
-        picture(harness);
+        screenshot(harness);
         if is_there(harness) {
             return;
         }
@@ -36,7 +36,7 @@ fn shows(harness: &Harness<'_, Window>, text: &str) -> bool {
 /// Writes an image of the window to the folder that HAZE_LOOK names, for visual inspection.
 fn look(harness: &mut Harness<'_, Window>, name: &str) {
     if let Some(folder) = std::env::var_os("HAZE_LOOK").map(std::path::PathBuf::from) {
-        picture(harness).save(folder.join(format!("{name}.png"))).unwrap();
+        screenshot(harness).save(folder.join(format!("{name}.png"))).unwrap();
     }
 }
 
@@ -44,14 +44,14 @@ fn look(harness: &mut Harness<'_, Window>, name: &str) {
 fn values_of_the_pixel_under_the_pointer_are_shown_and_a_click_pins_it() {
     let mut harness = window("column", SIZE, Theme::Dark);
     harness.key_press(Key::I);
-    let place = smoke(&harness);
-    harness.hover_at(place);
+    let position = smoke(&harness);
+    harness.hover_at(position);
     wait_for(&mut harness, |harness| shows(harness, "Coverage"));
     assert!(shows(&harness, "Point 1") && shows(&harness, "Soft scatter") && shows(&harness, "Displayed, sRGB"));
     assert!(shows(&harness, "Click to pin") && shows(&harness, " % left"));
-    harness.drag_at(place);
+    harness.drag_at(position);
     harness.step();
-    harness.drop_at(place);
+    harness.drop_at(position);
     harness.run_steps(3);
     harness.remove_cursor();
     harness.run_steps(3);
@@ -67,18 +67,18 @@ fn values_from_before_the_inspector_was_off_are_not_shown() {
     let pixel = |harness: &Harness<'_, Window>| {
         harness.state().session.inspect.pixel_values.as_ref().map(|values| values.pixel)
     };
-    let place = smoke(&harness);
-    harness.hover_at(place);
+    let position = smoke(&harness);
+    harness.hover_at(position);
     harness.key_press(Key::I);
     wait_for(&mut harness, |harness| pixel(harness).is_some());
     let inspected = pixel(&harness);
     // Values of another pixel are requested, and come while the inspector is off.
-    harness.hover_at(place - Vec2::new(0.0, 60.0));
+    harness.hover_at(position - Vec2::new(0.0, 60.0));
     harness.step();
     harness.key_press(Key::I);
     harness.step();
     std::thread::sleep(Duration::from_millis(300));
-    harness.hover_at(place);
+    harness.hover_at(position);
     harness.key_press(Key::I);
     wait_for(&mut harness, |harness| pixel(harness).is_some());
     assert_eq!(pixel(&harness), inspected);
@@ -90,8 +90,8 @@ fn the_inspector_reads_the_compared_image_under_the_pointer() {
     harness.key_press(Key::I);
     let mut show = |against: CompareWith, x: f32, text: &str| {
         harness.state_mut().session.compare.against = Some(against);
-        let place = smoke(&harness) + Vec2::new(x, 0.0);
-        harness.hover_at(place);
+        let position = smoke(&harness) + Vec2::new(x, 0.0);
+        harness.hover_at(position);
         wait_for(&mut harness, |harness| shows(harness, text));
         [shows(&harness, "Coverage"), shows(&harness, "Image B: ")]
     };
@@ -112,8 +112,8 @@ fn all_values_fit_on_the_image() {
         harness.key_press(Key::I);
         let viewport = harness.get_by_label("viewport").rect();
         for side in [-10.0, 10.0] {
-            let place = smoke(&harness) + Vec2::new(side, 0.0);
-            harness.hover_at(place);
+            let position = smoke(&harness) + Vec2::new(side, 0.0);
+            harness.hover_at(position);
             wait_for(&mut harness, |harness| shows(harness, "Coverage"));
             harness.run_steps(3);
             let is_color = |node: &egui_kittest::Node<'_>| {
@@ -141,18 +141,18 @@ fn pointing_at_a_ramp_highlights_the_smoke_that_samples_it() {
     harness.get_by_label("Ramps").click();
     wait_for(&mut harness, |harness| shows(harness, "Point 1"));
     let viewport = harness.get_by_label("viewport").rect();
-    let before = brightness(&picture(&mut harness), viewport);
+    let before = brightness(&screenshot(&mut harness), viewport);
     // The middle of the diffuse ramp, which most of the lit smoke samples.
     let ramp = harness.get_by_label("Diffuse ramp").rect();
     harness.hover_at(egui::pos2(ramp.center().x, ramp.center().y));
     harness.step();
-    let flash = brightness(&picture(&mut harness), viewport);
+    let flash = brightness(&screenshot(&mut harness), viewport);
     harness.run_steps(10);
-    let lit = brightness(&picture(&mut harness), viewport);
+    let lit = brightness(&screenshot(&mut harness), viewport);
     assert!(lit > before + 0.5 && flash > lit + 0.3, "{before} {flash} {lit}");
     harness.hover_at(egui::pos2(5.0, 5.0));
     harness.run_steps(3);
-    assert!((brightness(&picture(&mut harness), viewport) - before).abs() < 0.1);
+    assert!((brightness(&screenshot(&mut harness), viewport) - before).abs() < 0.1);
 }
 
 #[test]
@@ -168,23 +168,25 @@ fn pointing_at_a_ramp_with_two_axes_highlights_the_smoke_that_samples_it() {
         harness.get_by_label(name).scroll_to_me();
         harness.run_steps(20);
         let viewport = harness.get_by_label("viewport").rect();
-        let before = brightness(&picture(&mut harness), viewport);
+        let before = brightness(&screenshot(&mut harness), viewport);
         let Some(survey) = harness.state().session.inspect.survey.clone() else { panic!("no survey of {preset}") };
         let density = survey.over_both_axes(ramp, 0);
         let most = (0..density.len()).max_by(|a, b| density[*a].total_cmp(&density[*b])).unwrap();
-        let place = Vec2::new((most % ramp_survey::SIDE) as f32, (most / ramp_survey::SIDE) as f32) + Vec2::splat(0.5);
-        let place = place / ramp_survey::SIDE as f32;
+        let position =
+            Vec2::new((most % ramp_survey::SIDE) as f32, (most / ramp_survey::SIDE) as f32) + Vec2::splat(0.5);
+        let position = position / ramp_survey::SIDE as f32;
         let rect = harness.get_by_label(name).rect();
-        harness.hover_at(egui::pos2(rect.left() + place.x * rect.width(), rect.bottom() - place.y * rect.height()));
+        harness
+            .hover_at(egui::pos2(rect.left() + position.x * rect.width(), rect.bottom() - position.y * rect.height()));
         harness.run_steps(3);
-        let image = picture(&mut harness);
+        let image = screenshot(&mut harness);
         let lit = brightness(&image, viewport);
         assert!(lit > before + 0.2, "{preset}: {before} {lit}");
         look(&mut harness, &format!("ramp_{preset}"));
         // Values of the pixel under the pointer, and its marks on the ramps.
         harness.key_press(Key::I);
-        let place = smoke(&harness);
-        harness.hover_at(place);
+        let position = smoke(&harness);
+        harness.hover_at(position);
         wait_for(&mut harness, |harness| shows(harness, "Click to pin"));
         assert_eq!([shows(&harness, " % left"), shows(&harness, "heat 0.")], [true, ramp == TwoAxisRamp::Fire]);
         look(&mut harness, &format!("inspector_{preset}"));
@@ -203,11 +205,11 @@ fn the_highlight_is_painted_below_the_toolbar() {
     let viewport = harness.get_by_label("viewport").rect();
     let tool = harness.get_by_label("Lit plane").rect();
     let beside = egui::Rect::from_min_size(tool.left_bottom() + Vec2::new(0.0, 12.0), tool.size());
-    let mut parts = |share: f32| {
-        harness.hover_at(egui::pos2(ramp.left() + share * ramp.width(), ramp.center().y));
+    let mut parts = |fraction: f32| {
+        harness.hover_at(egui::pos2(ramp.left() + fraction * ramp.width(), ramp.center().y));
         harness.run_steps(3);
-        let picture = picture(&mut harness);
-        [brightness(&picture, tool), brightness(&picture, beside), brightness(&picture, viewport)]
+        let image = screenshot(&mut harness);
+        [brightness(&image, tool), brightness(&image, beside), brightness(&image, viewport)]
     };
     let all: Vec<_> = (0..12).map(|step| parts(0.04 + 0.08 * step as f32)).collect();
     let spread = |part: usize| {
@@ -226,7 +228,7 @@ fn a_still_image_is_not_drawn_again() {
     wait_for(&mut harness, |harness| shows(harness, "Point 1"));
     // At most the pending copy, its analysis, and the end of its interval.
     for _ in 0..5 {
-        picture(&mut harness);
+        screenshot(&mut harness);
         std::thread::sleep(Duration::from_millis(300));
     }
     harness.run_steps(4);

@@ -10,19 +10,19 @@ use haze_preset::{CompressionEffort, Preset, write_png};
 
 use crate::session::{CopiedImage, CopyRequest};
 use crate::window::Window;
-use crate::window::testing::{brightness, picture, window};
+use crate::window::testing::{brightness, screenshot, window};
 
 const SIZE: Vec2 = Vec2::new(1000.0, 640.0);
 
-/// Inspects a pixel in the middle of the image, and returns its place.
+/// Inspects a pixel in the middle of the image, and returns its position.
 fn inspect(harness: &mut Harness<'_, Window>) -> Pos2 {
     harness.key_press(Key::I);
-    let place = harness.get_by_label("viewport").rect().center();
-    harness.hover_at(place);
+    let position = harness.get_by_label("viewport").rect().center();
+    harness.hover_at(position);
     for _ in 0..300 {
-        picture(harness);
+        screenshot(harness);
         if harness.query_all_by_label_contains("Coverage").next().is_some() {
-            return place;
+            return position;
         }
         std::thread::sleep(Duration::from_millis(20));
     }
@@ -58,13 +58,13 @@ fn a_drag_on_smoke_changes_its_brightness_in_one_step() {
 
     let mut harness = window(path("own.json").to_str().unwrap(), SIZE, Theme::Dark);
     let camera = harness.state().session.document.preset.camera;
-    let place = harness.get_by_label("viewport").rect().center();
-    let around = Rect::from_center_size(place, Vec2::splat(16.0));
-    let brightness = |harness: &mut Harness<'_, Window>| brightness(&picture(harness), around);
+    let position = harness.get_by_label("viewport").rect().center();
+    let around = Rect::from_center_size(position, Vec2::splat(16.0));
+    let brightness = |harness: &mut Harness<'_, Window>| brightness(&screenshot(harness), around);
     let before = brightness(&mut harness);
     let painted = |harness: &mut Harness<'_, Window>, way: f32| {
-        let place = inspect(harness);
-        paint(harness, place, Vec2::new(0.0, way));
+        let position = inspect(harness);
+        paint(harness, position, Vec2::new(0.0, way));
         // The values of the pixel would lie over it.
         harness.key_press(Key::I);
         harness.run_steps(2);
@@ -90,8 +90,8 @@ fn a_drag_on_smoke_changes_its_brightness_in_one_step() {
 #[test]
 fn a_built_in_ramp_is_copied_first() {
     let mut harness = window("column", SIZE, Theme::Dark);
-    let place = inspect(&mut harness);
-    paint(&mut harness, place, Vec2::new(0.0, 30.0));
+    let position = inspect(&mut harness);
+    paint(&mut harness, position, Vec2::new(0.0, 30.0));
     let request = harness.state().session.copy_request.clone();
     let is_ramp = |request: &CopyRequest| matches!(request.image, CopiedImage::Ramp("diffuse_ramp" | "backlight_ramp"));
     assert!(request.as_ref().is_some_and(is_ramp), "{request:?}");

@@ -7,7 +7,7 @@ use haze::Light;
 
 use super::lit;
 use crate::window::Window;
-use crate::window::testing::picture;
+use crate::window::testing::screenshot;
 
 #[test]
 fn the_turntable_rotates_lights_and_does_not_change_the_preset() {
@@ -47,7 +47,7 @@ fn a_path_traced_puff_is_compared_with_the_ramps_while_lights_rotate() {
     assert!(harness.query_by_label_contains("Path tracing").is_some());
     let of_painted = figures(&mut harness, "");
     if let Some(folder) = std::env::var_os("HAZE_LOOK") {
-        picture(&mut harness).save(std::path::Path::new(&folder).join("puff.png")).unwrap();
+        screenshot(&mut harness).save(std::path::Path::new(&folder).join("puff.png")).unwrap();
     }
     // The ramps that were fitted to this medium.
     let material = &mut harness.state_mut().session.document.preset.systems[0].material;

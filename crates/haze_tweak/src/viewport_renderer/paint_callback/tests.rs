@@ -14,7 +14,7 @@ use crate::files::hot_reload::ShaderFolder;
 use crate::files::persistence::Layout;
 use crate::session::Session;
 use crate::viewport_renderer::compared_side::ComparedSide;
-use crate::window::testing::{brightness, picture};
+use crate::window::testing::{brightness, screenshot};
 use crate::window::{Start, Window};
 
 /// Opens a window, and returns the render state of its egui.
@@ -37,7 +37,7 @@ fn window() -> (Harness<'static, Window>, RenderState) {
 
 fn shown(harness: &mut Harness<'static, Window>) -> f64 {
     let part = harness.get_by_label("viewport").rect();
-    brightness(&picture(harness), part)
+    brightness(&screenshot(harness), part)
 }
 
 #[test]

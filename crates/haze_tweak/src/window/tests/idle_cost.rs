@@ -8,7 +8,7 @@ use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use image::RgbaImage;
 
 use crate::window::Window;
-use crate::window::testing::{picture, window};
+use crate::window::testing::{screenshot, window};
 
 /// Opens a window whose viewport has this size.
 fn window_around(size: Vec2) -> Harness<'static, Window> {
@@ -45,7 +45,7 @@ fn drag(harness: &mut Harness<'_, Window>, frames: usize) -> (f64, u32) {
             before = worked();
         }
         harness.hover_at(at(frame));
-        picture(harness);
+        screenshot(harness);
         coarsest = coarsest.max(harness.state().renderer().divisor());
     }
     let seconds = start.elapsed().as_secs_f64();
@@ -72,7 +72,7 @@ fn a_slider_is_dragged_at_15_frames_a_second() {
 fn an_idle_window_draws_nothing_and_requests_no_repaint() {
     let mut harness = window("column", Vec2::new(700.0, 480.0), Theme::Dark);
     let drawn = |harness: &mut Harness<'_, Window>| {
-        picture(harness);
+        screenshot(harness);
         harness.state().renderer().render_stats().renders
     };
     drawn(&mut harness);
@@ -92,17 +92,17 @@ fn an_idle_window_draws_nothing_and_requests_no_repaint() {
 #[test]
 fn the_full_resolution_returns_when_everything_is_released() {
     let mut harness = window("column", Vec2::new(700.0, 480.0), Theme::Dark);
-    let whole = picture(&mut harness);
+    let whole = screenshot(&mut harness);
     // The status bar, where a drag changes nothing.
     let at = Pos2::new(350.0, 476.0);
     harness.drag_at(at);
     harness.step();
     harness.state().renderer().simulate_slow_frame();
-    let coarse = picture(&mut harness);
+    let coarse = screenshot(&mut harness);
     assert!(harness.state().renderer().divisor() > 1);
     harness.drop_at(at);
     harness.run_steps(3);
-    let again = picture(&mut harness);
+    let again = screenshot(&mut harness);
     let part = harness.get_by_label("viewport").rect().shrink(8.0);
     let apart = |a: &RgbaImage, b: &RgbaImage| {
         let pixels = (part.top() as u32..part.bottom() as u32)

@@ -14,7 +14,7 @@ use haze_preset::{CompressionEffort, Preset, write_png};
 use image::RgbaImage;
 
 use crate::window::Window;
-use crate::window::testing::{brightness, click_at, picture, window};
+use crate::window::testing::{brightness, click_at, screenshot, window};
 
 /// Window whose actions are counted.
 struct Script {
@@ -44,17 +44,17 @@ impl Script {
         self.harness.run_steps(4);
     }
 
-    /// Drags the slider of a row to a share of its length.
-    fn drag_slider(&mut self, name: &str, share: f32) {
+    /// Drags the slider of a row to a fraction of its length.
+    fn drag_slider(&mut self, name: &str, fraction: f32) {
         self.actions += 1;
         let sliders = self.harness.get_all_by_label(name);
         let slider = sliders.into_iter().find(|node| node.accesskit_node().role() == Role::Slider).unwrap().rect();
         self.drag(slider.center(), Modifiers::NONE, |_, step| {
-            (step < 3).then(|| slider.left_center() + Vec2::new(share * slider.width(), 0.0))
+            (step < 3).then(|| slider.left_center() + Vec2::new(fraction * slider.width(), 0.0))
         });
     }
 
-    /// Presses, moves to the places that `next` returns, and releases.
+    /// Presses, moves to the positions that `next` returns, and releases.
     fn drag(
         &mut self,
         from: Pos2,
@@ -91,11 +91,11 @@ impl Script {
 }
 
 /// Mean red over mean blue of a part of an image.
-fn warmth(picture: &RgbaImage, part: Rect) -> f64 {
+fn warmth(image: &RgbaImage, part: Rect) -> f64 {
     let mut sums = [0.0; 3];
     for y in part.top() as u32..part.bottom() as u32 {
         for x in part.left() as u32..part.right() as u32 {
-            let pixel = picture.get_pixel(x, y).0;
+            let pixel = image.get_pixel(x, y).0;
             sums.iter_mut().zip(pixel).for_each(|(sum, channel)| *sum += f64::from(channel));
         }
     }
@@ -108,7 +108,7 @@ fn a_sunset_from_the_column_takes_at_most_8_actions() {
     script.click("Light");
     script.click("Add a sun");
     script.click("Noon");
-    let noon = warmth(&picture(&mut script.harness), script.image());
+    let noon = warmth(&screenshot(&mut script.harness), script.image());
     script.click("Sunset");
     script.drag_slider("Sun azimuth", 0.25);
     script.click("Point 1");
@@ -116,7 +116,7 @@ fn a_sunset_from_the_column_takes_at_most_8_actions() {
     assert!(script.actions <= 8, "{}", script.actions);
     let lights = &script.preset().lights;
     assert!(sun_of(lights).is_some() && lights.len() == 3, "{lights:?}");
-    let sunset = warmth(&picture(&mut script.harness), script.image());
+    let sunset = warmth(&screenshot(&mut script.harness), script.image());
     assert!(sunset > 1.1 * noon, "{sunset} {noon}");
 }
 
@@ -161,24 +161,24 @@ fn the_brightness_of_a_pixel_is_matched_by_one_drag_on_the_smoke() {
     std::fs::write(path("mine.ramp.json"), recipe.to_json()).unwrap();
     write_png(&path("mine.png"), &recipe.bake().unwrap(), CompressionEffort::Quick).unwrap();
     let mut script = Script::open(path("own.json").to_str().unwrap(), Vec2::new(1000.0, 640.0));
-    let place = script.image().center();
-    let around = Rect::from_center_size(place, Vec2::splat(12.0));
-    let wanted = brightness(&picture(&mut script.harness), around) + 18.0;
+    let position = script.image().center();
+    let around = Rect::from_center_size(position, Vec2::splat(12.0));
+    let wanted = brightness(&screenshot(&mut script.harness), around) + 18.0;
     script.click("Inspect");
     let actions = script.actions;
-    script.harness.hover_at(place);
+    script.harness.hover_at(position);
     let start = Instant::now();
     while script.harness.query_all_by_label_contains("Coverage").next().is_none() {
         assert!(start.elapsed() < Duration::from_secs(20), "no values of the pixel");
-        picture(&mut script.harness);
+        screenshot(&mut script.harness);
         std::thread::sleep(Duration::from_millis(20));
     }
     let mut found = 0.0;
     script.actions += 1;
-    script.drag(place, Modifiers::COMMAND, |harness, step| {
+    script.drag(position, Modifiers::COMMAND, |harness, step| {
         // Upwards until the smoke is as bright as wanted.
-        found = brightness(&picture(harness), around);
-        (found < wanted && step < 100).then(|| place - Vec2::new(0.0, 4.0 * (step + 3) as f32))
+        found = brightness(&screenshot(harness), around);
+        (found < wanted && step < 100).then(|| position - Vec2::new(0.0, 4.0 * (step + 3) as f32))
     });
     assert!((found - wanted).abs() < 4.0, "{found} {wanted}");
     assert_eq!(script.actions - actions, 1);

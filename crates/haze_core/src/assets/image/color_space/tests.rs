@@ -9,9 +9,9 @@ use super::*;
 type Chunk = (&'static [u8; 4], Vec<u8>);
 
 /// Encodes a PNG with extra chunks between its header and its pixels.
-fn png(picture: &DynamicImage, chunks: &[Chunk]) -> Vec<u8> {
+fn png(image: &DynamicImage, chunks: &[Chunk]) -> Vec<u8> {
     let mut bytes = Vec::new();
-    picture.write_to(&mut Cursor::new(&mut bytes), ImageFormat::Png).unwrap();
+    image.write_to(&mut Cursor::new(&mut bytes), ImageFormat::Png).unwrap();
     // Signature and header have 33 bytes.
     let pixels = bytes.split_off(33);
     for (kind, data) in chunks {
@@ -61,9 +61,9 @@ const CODE: [u8; 3] = [180, 90, 40];
 
 /// Decodes an image of color [`CODE`] with the given chunks and returns its sRGB code.
 fn decoded(chunks: &[Chunk]) -> Result<[u8; 3], String> {
-    let picture = DynamicImage::ImageRgb8(ImageBuffer::from_pixel(3, 1, image::Rgb(CODE)));
-    let decoded = decode_color_png(Path::new("a.png"), &png(&picture, chunks));
-    decoded.map(|picture| picture.to_rgb8().get_pixel(1, 0).0).map_err(|error| error.to_string())
+    let image = DynamicImage::ImageRgb8(ImageBuffer::from_pixel(3, 1, image::Rgb(CODE)));
+    let decoded = decode_color_png(Path::new("a.png"), &png(&image, chunks));
+    decoded.map(|image| image.to_rgb8().get_pixel(1, 0).0).map_err(|error| error.to_string())
 }
 
 fn of_power(power: f32) -> [u8; 3] {
@@ -73,7 +73,7 @@ fn of_power(power: f32) -> [u8; 3] {
 #[test]
 fn every_color_tag_is_applied() {
     let refused =
-        |found: &str| Err(format!("a.png: {found}; expected sRGB: convert the picture to sRGB when exporting it"));
+        |found: &str| Err(format!("a.png: {found}; expected sRGB: convert the image to sRGB when exporting it"));
     for chunks in [vec![], vec![srgb()], vec![cicp([1, 13, 0, 1])], vec![gama(0)], vec![chrm(SRGB)]] {
         assert_eq!(decoded(&chunks), Ok(CODE), "{chunks:?}");
     }
@@ -123,17 +123,17 @@ fn color_tags_take_precedence_as_in_the_png_specification() {
 fn transparent_pixels_are_composited_over_black_in_linear_light() {
     let pixel = |alpha| Rgba([CODE[0], CODE[1], CODE[2], alpha]);
     let alphas = [255, 128, 0];
-    let picture = DynamicImage::ImageRgba8(ImageBuffer::from_fn(3, 1, |x, _| pixel(alphas[x as usize])));
-    let decoded = decode_color_png(Path::new("a.png"), &png(&picture, &[])).unwrap().to_rgb8();
+    let image = DynamicImage::ImageRgba8(ImageBuffer::from_fn(3, 1, |x, _| pixel(alphas[x as usize])));
+    let decoded = decode_color_png(Path::new("a.png"), &png(&image, &[])).unwrap().to_rgb8();
     for (x, alpha) in alphas.into_iter().enumerate() {
-        let share = f32::from(alpha) / 255.0;
+        let fraction = f32::from(alpha) / 255.0;
         let expected = CODE
-            .map(|code| (srgb_from_linear(linear_from_srgb(f32::from(code) / 255.0) * share) * 255.0).round() as u8);
+            .map(|code| (srgb_from_linear(linear_from_srgb(f32::from(code) / 255.0) * fraction) * 255.0).round() as u8);
         assert_eq!(decoded.get_pixel(x as u32, 0).0, expected);
     }
     // An opaque image with an alpha channel stays unchanged.
-    let picture = DynamicImage::ImageRgba8(ImageBuffer::from_pixel(3, 1, pixel(255)));
-    assert_eq!(decode_color_png(Path::new("a.png"), &png(&picture, &[])).unwrap(), picture);
+    let image = DynamicImage::ImageRgba8(ImageBuffer::from_pixel(3, 1, pixel(255)));
+    assert_eq!(decode_color_png(Path::new("a.png"), &png(&image, &[])).unwrap(), image);
 }
 
 #[test]
@@ -147,8 +147,8 @@ fn every_kind_of_png_is_read_and_refused_if_truncated() {
         }
         count += 1;
         let bytes = std::fs::read(&path).unwrap();
-        let picture = decode_color_png(&path, &bytes).unwrap();
-        assert!(picture.width() > 0);
+        let image = decode_color_png(&path, &bytes).unwrap();
+        assert!(image.width() > 0);
         let end = bytes.windows(4).rposition(|kind| kind == b"IEND").unwrap() + 8;
         for length in 0..end {
             let error = decode_png(&path, &bytes[..length]).unwrap_err().to_string();

@@ -13,8 +13,8 @@ pub fn profile(primaries: [[f32; 3]; 3], curve: &[u8]) -> Vec<u8> {
     let mut table = (tags.len() as u32).to_be_bytes().to_vec();
     let mut data = Vec::new();
     for (name, bytes) in tags {
-        let place = 132 + 12 * tags.len() + data.len();
-        table.extend([name, &(place as u32).to_be_bytes(), &(bytes.len() as u32).to_be_bytes()].concat());
+        let offset = 132 + 12 * tags.len() + data.len();
+        table.extend([name, &(offset as u32).to_be_bytes(), &(bytes.len() as u32).to_be_bytes()].concat());
         data.extend(bytes);
     }
     let mut header = vec![0; 128];

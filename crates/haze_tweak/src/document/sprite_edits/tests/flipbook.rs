@@ -34,9 +34,9 @@ fn the_light_follows_its_controls_and_a_drag() {
     let mut halves = |azimuth| {
         harness.state_mut().session.view.sprite.light = Angles { azimuth, elevation: 0.0 };
         let rect = harness.get_by_label("Flipbook").rect();
-        let picture = picture(&mut harness);
+        let image = screenshot(&mut harness);
         let middle = rect.center().x;
-        [rect.with_max_x(middle), rect.with_min_x(middle)].map(|half: Rect| brightness(&picture, half))
+        [rect.with_max_x(middle), rect.with_min_x(middle)].map(|half: Rect| brightness(&image, half))
     };
     let [left, right] = halves(-90.0);
     assert!(left > right + 5.0, "{left} {right}");
@@ -88,10 +88,10 @@ fn the_flipbook_repaints_only_while_it_is_visible_and_playing() {
         harness.output().viewport_output.values().all(|viewport| viewport.repaint_delay > Duration::from_secs(1))
     };
     assert!(is_still(&mut harness));
-    let before = picture(&mut harness);
+    let before = screenshot(&mut harness);
     harness.get_by_label("Play flipbook").click();
     assert!(!is_still(&mut harness));
-    assert_ne!(picture(&mut harness), before);
+    assert_ne!(screenshot(&mut harness), before);
     let frame = harness.state().session.view.sprite.frame;
     assert!(frame > 0.0);
     harness.get_by_label("Look").click();
@@ -117,11 +117,11 @@ fn write_images_of_the_sprite_tab() {
     for theme in [Theme::Dark, Theme::Light] {
         harness.ctx.set_theme(theme);
         harness.run_steps(3);
-        picture(&mut harness).save(into.join(format!("sprite_own_{theme:?}.png"))).unwrap();
+        screenshot(&mut harness).save(into.join(format!("sprite_own_{theme:?}.png"))).unwrap();
     }
     for (index, (_, name, _)) in crate::session::sprite_view::SPRITE_CHANNELS.iter().enumerate() {
         harness.get_by_label(name).click();
         harness.run_steps(3);
-        picture(&mut harness).save(into.join(format!("sprite_shown_{index}.png"))).unwrap();
+        screenshot(&mut harness).save(into.join(format!("sprite_shown_{index}.png"))).unwrap();
     }
 }

@@ -17,7 +17,7 @@ fn files_changed_by_another_program_are_not_overwritten_until_requested() {
     set(&mut harness, "Bump", 3.0);
     until(&mut harness, |harness| !harness.state().session.sprites.is_baking());
     let other = SpriteRecipe { seed: 77, ..small() };
-    write_png(&folder.path("mine.png"), &baked(&other).picture.into(), CompressionEffort::Quick).unwrap();
+    write_png(&folder.path("mine.png"), &baked(&other).image.into(), CompressionEffort::Quick).unwrap();
     until(&mut harness, |harness| harness.query_by_label("Bake recipe").is_some());
     until(&mut harness, |harness| Some(used(harness)) == folder.sprite());
     assert!(harness.query_by_label("Erosion").is_none() && (folder.recipe().bump - 3.0).abs() < 1e-6);
@@ -78,11 +78,11 @@ fn a_new_window_shows_the_flipbook_and_continues_the_bake() {
 #[test]
 fn an_outdated_bake_is_cancelled_and_not_written() {
     let folder = Folder::new();
-    let picture = folder.path("mine.png");
-    let before = stamps(&picture);
+    let image = folder.path("mine.png");
+    let before = stamps(&image);
     let mut bake_job = SpriteBakeJob::new(|| ()).unwrap();
     let long = SpriteRecipe { size: 128, columns: 16, rows: 16, ..small() };
-    let order = bake_job.full(long, picture.clone(), before);
+    let order = bake_job.full(long, image.clone(), before);
     let start = Instant::now();
     while order.frames() < 2 {
         assert!(start.elapsed() < LONG);
@@ -98,10 +98,10 @@ fn an_outdated_bake_is_cancelled_and_not_written() {
     assert!(done.job == order.job && matches!(done.what, BakeResult::GivenUp) && order.frames() < 100);
     // Files that another program has changed are not overwritten either.
     std::fs::write(folder.path("mine.sprite.json"), "{}").unwrap();
-    bake_job.full(small(), picture.clone(), before);
+    bake_job.full(small(), image.clone(), before);
     assert!(matches!(wait(&bake_job).what, BakeResult::GivenUp));
     assert_eq!(std::fs::read_to_string(folder.path("mine.sprite.json")).unwrap(), "{}");
-    assert_eq!(stamps(&picture)[..2], before[..2]);
+    assert_eq!(stamps(&image)[..2], before[..2]);
 }
 
 #[test]
@@ -110,18 +110,18 @@ fn a_bake_and_a_reading_give_the_same_when_they_are_sent_as_text() {
         serde_json::from_str(&serde_json::to_string(value).unwrap()).unwrap()
     }
     let folder = Folder::new();
-    let picture = folder.path("mine.png");
-    let bake = || BakeSprite { recipe: small(), picture: picture.clone() };
+    let image = folder.path("mine.png");
+    let bake = || BakeSprite { recipe: small(), image: image.clone() };
     let [here, there] = [bake(), sent(&bake())].map(|job| job.run(&|_| true).ok().unwrap());
     let there = sent(&there);
-    assert!(here.picture == there.picture && here.detail == there.detail && here.findings == there.findings);
+    assert!(here.image == there.image && here.detail == there.detail && here.findings == there.findings);
     assert!(matches!(sent(&bake().run(&|_| false)), Err(NotBaked::Stopped)));
     let refused = BakeSprite { recipe: SpriteRecipe { columns: 0, ..small() }, ..bake() };
     assert!(matches!(sent(&refused.run(&|_| true)), Err(NotBaked::Refused { field, .. }) if field == "columns"));
 
-    let read = || ReadSprite { name: "mine.png".into(), picture: picture.clone(), layout: small().layout() };
+    let read = || ReadSprite { name: "mine.png".into(), image: image.clone(), layout: small().layout() };
     // A page sends the files that the job names.
-    assert_eq!(read().reads(), [picture.clone(), folder.path("mine.sprite.json")]);
+    assert_eq!(read().reads(), [image.clone(), folder.path("mine.sprite.json")]);
     let [here, there] = [read(), sent(&read())].map(|job| job.run(&|_| true));
     let there = sent(&there);
     assert!(matches!(here.source, SpriteOrigin::Recipe(_)));

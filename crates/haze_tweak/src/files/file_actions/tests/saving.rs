@@ -34,9 +34,9 @@ fn changes_are_saved_by_menu_by_key_and_under_another_name() {
     bench.click("Cancel");
     // A name that is not valid for a preset.
     bench.press(COMMAND_SHIFT, Key::S);
-    let picture = bench.path("a.png");
-    bench.type_path(&picture);
-    assert!(bench.said().contains("a name that ends in .json") && !picture.exists(), "{}", bench.said());
+    let image = bench.path("a.png");
+    bench.type_path(&image);
+    assert!(bench.said().contains("a name that ends in .json") && !image.exists(), "{}", bench.said());
     assert_eq!(bench.session().document.path(), other);
 }
 
@@ -81,13 +81,13 @@ fn a_failed_save_is_reported_and_the_work_stays_unsaved() {
         .output()
         .is_ok_and(|output| output.status.success());
     let gone = bench.path("gone/shot.json");
-    let mut places = vec![(gone, "No such file")];
+    let mut locations = vec![(gone, "No such file")];
     if is_mounted {
         fs::write(full.join("my.json"), "old").unwrap();
         let _ = fs::write(full.join("rest"), vec![0; 1 << 20]);
-        places.push((full.join("my.json"), "the disk is full"));
+        locations.push((full.join("my.json"), "the disk is full"));
     }
-    for (path, expected) in places {
+    for (path, expected) in locations {
         bench.press(COMMAND_SHIFT, Key::S);
         bench.window.state_mut().file_actions.typed.as_mut().unwrap().text = path.display().to_string();
         bench.window.run_steps(2);

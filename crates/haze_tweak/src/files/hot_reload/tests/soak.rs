@@ -7,7 +7,7 @@ use haze_preset::Preset;
 
 use super::{Bench, COLOR, SIZE, write_ramp};
 use crate::document::history::MAX_STEPS;
-use crate::window::testing::picture;
+use crate::window::testing::screenshot;
 
 /// Resources of the process.
 #[derive(Clone, Copy)]
@@ -73,7 +73,7 @@ fn reload_shaders(bench: &mut Bench, count: u32) {
             false => bench.said().is_some_and(|said| said.contains(&index.to_string())),
         });
         if index % 10 == 0 {
-            picture(&mut bench.window);
+            screenshot(&mut bench.window);
         }
     }
     fs::write(&path, COLOR).unwrap();
@@ -85,8 +85,8 @@ fn reload_shaders(bench: &mut Bench, count: u32) {
 fn write_sheet(folder: &Path, alpha: u8) {
     let inside = |x, y| (1..31).contains(&x) && (1..31).contains(&y);
     let texel = |x, y| image::Rgba([128, 128, 255, if inside(x, y) { alpha } else { 0 }]);
-    let picture = image::RgbaImage::from_fn(32, 32, texel);
-    haze_preset::write_png(&folder.join("sheet.png"), &picture.into(), haze_preset::CompressionEffort::Quick).unwrap();
+    let image = image::RgbaImage::from_fn(32, 32, texel);
+    haze_preset::write_png(&folder.join("sheet.png"), &image.into(), haze_preset::CompressionEffort::Quick).unwrap();
 }
 
 /// Saves broken and valid files of every kind alternately.
@@ -102,15 +102,15 @@ fn reload(bench: &mut Bench, count: u32) {
     bench.until(|bench| bench.session().document.preset == preset);
     bench.rest();
     for index in 0..count {
-        let pictures = bench.pictures();
+        let images = bench.images();
         let is_good = index % 2 == 1;
         // A shader takes as long as all the others together.
         let kind = index / 2 % 5;
         match (kind, is_good) {
             (0 | 4, true) => write_ramp(&folder, (index % 251) as u8),
-            (0 | 4, false) => fs::write(folder.join("mine.png"), "no picture").unwrap(),
+            (0 | 4, false) => fs::write(folder.join("mine.png"), "no image").unwrap(),
             (1, true) => write_sheet(&folder, 1 + (index % 251) as u8),
-            (1, false) => fs::write(folder.join("sheet.png"), "no picture").unwrap(),
+            (1, false) => fs::write(folder.join("sheet.png"), "no image").unwrap(),
             (2, true) => {
                 preset.name = format!("column {index}");
                 fs::write(&path, preset.to_json("")).unwrap();
@@ -127,10 +127,10 @@ fn reload(bench: &mut Bench, count: u32) {
             (3, true) => {
                 bench.said().is_none() && format!("{:?}", bench.session().shaders).contains(&format!("// {index}\\n"))
             }
-            (_, true) => bench.said().is_none() && !bench.pictures().shares_memory(&pictures),
+            (_, true) => bench.said().is_none() && !bench.images().shares_memory(&images),
         });
         if index % 50 == 0 {
-            picture(&mut bench.window);
+            screenshot(&mut bench.window);
         }
     }
     fs::write(&path, &before).unwrap();
@@ -158,7 +158,7 @@ fn give_back() {
 /// Returns the resources at rest. The device frees unused resources while images are drawn.
 fn held_at_rest(bench: &mut Bench) -> Held {
     let looks: Vec<_> = std::iter::repeat_with(|| {
-        picture(&mut bench.window);
+        screenshot(&mut bench.window);
         give_back();
         Held::now()
     })
@@ -168,7 +168,7 @@ fn held_at_rest(bench: &mut Bench) -> Held {
     Held { files: least(|held| held.files), resident: least(|held| held.resident), live: least(|held| held.live) }
 }
 
-/// HAZE_RELOADS sets the number in place of 5,000. A shader takes most of a second on two cores.
+/// HAZE_RELOADS sets the number instead of 5,000. A shader takes most of a second on two cores.
 fn soak(reload: fn(&mut Bench, u32)) {
     let count = std::env::var("HAZE_RELOADS").ok().and_then(|count| count.parse().ok()).unwrap_or(5000);
     let mut bench = Bench::new(SIZE);

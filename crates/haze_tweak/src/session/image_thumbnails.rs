@@ -31,7 +31,7 @@ type Decoded = (Key, Option<ColorImage>);
 
 /// Cache of thumbnails, shared by the panels.
 #[derive(Default)]
-pub struct PictureThumbnails(RefCell<Inner>);
+pub struct ImageThumbnails(RefCell<Inner>);
 
 #[derive(Default)]
 struct Inner {
@@ -52,7 +52,7 @@ struct Thumb {
     texture: Option<TextureHandle>,
 }
 
-impl PictureThumbnails {
+impl ImageThumbnails {
     /// Sets the folders to the preset's own, followed by the shared one.
     pub fn follow(&self, preset: &Path, assets: Option<&Path>) {
         let own = preset.extension().map(|_| preset.parent().unwrap_or(Path::new("")));
@@ -133,7 +133,7 @@ fn thumbnail(role: ImageRole, source: &ImageSource) -> Result<ColorImage, Error>
         (ImageRole::Sprite, ImageSource::Builtin(builtin)) => Ok(puff(&builtin.sprite()?)),
         (ImageRole::Noise, ImageSource::Builtin(builtin)) => Ok(slice(&builtin.noise()?)),
         (_, ImageSource::Builtin(builtin)) => decoded(role, &builtin_path(builtin.name), builtin.bytes),
-        (_, ImageSource::File(path)) => decoded(role, path, &file_io::read_picture(path)?),
+        (_, ImageSource::File(path)) => decoded(role, path, &file_io::read_image(path)?),
     }
 }
 

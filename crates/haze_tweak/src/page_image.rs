@@ -1,4 +1,4 @@
-//! Pictures for scripts on the page, drawn by the GPU of the canvas.
+//! Images for scripts on the page, drawn by the GPU of the canvas.
 
 use std::path::Path;
 
@@ -12,7 +12,7 @@ use haze_export::page_renderer::PageRenderer;
 
 /// Draws a built-in preset. Resolves to its pixels as RGB, row by row from the top.
 #[wasm_bindgen]
-pub async fn picture(preset: String, width: u32, height: u32) -> Result<Vec<u8>, JsValue> {
+pub async fn image(preset: String, width: u32, height: u32) -> Result<Vec<u8>, JsValue> {
     draw(&preset, UVec2::new(width, height)).await.map_err(|error| JsValue::from_str(&error.to_string()))
 }
 

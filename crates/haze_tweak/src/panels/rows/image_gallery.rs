@@ -4,7 +4,7 @@ use eframe::egui::{self, Rect, Response, Sense, Stroke, Ui, Vec2};
 use haze_core::assets::ramp::RampRole;
 use haze_core::settings::ImageRole;
 
-use crate::session::picture_thumbnails::{PictureThumbnails, SIZE};
+use crate::session::image_thumbnails::{ImageThumbnails, SIZE};
 
 /// Size of a thumbnail and height of its name, points.
 const THUMBNAIL: Vec2 = Vec2::new(SIZE[0] as f32, SIZE[1] as f32);
@@ -14,13 +14,7 @@ const COLUMNS: f32 = 3.0;
 
 /// Draws a field that names an image. Its menu shows thumbnails: first the ramps for the role of the field, then the
 /// others. `path` is that of the field.
-pub fn gallery(
-    ui: &mut Ui,
-    thumbnails: &PictureThumbnails,
-    role: ImageRole,
-    value: &mut String,
-    path: &str,
-) -> Response {
+pub fn gallery(ui: &mut Ui, thumbnails: &ImageThumbnails, role: ImageRole, value: &mut String, path: &str) -> Response {
     let shown = if value.is_empty() { "None" } else { value.as_str() };
     let combo = egui::ComboBox::from_id_salt(path)
         .selected_text(shown)
@@ -59,23 +53,23 @@ pub fn gallery(
 }
 
 /// Draws a thumbnail with its name.
-fn cell(ui: &mut Ui, thumbnails: &PictureThumbnails, role: ImageRole, name: &str, is_chosen: bool) -> Response {
+fn cell(ui: &mut Ui, thumbnails: &ImageThumbnails, role: ImageRole, name: &str, is_chosen: bool) -> Response {
     let (rect, response) = ui.allocate_exact_size(THUMBNAIL + Vec2::new(8.0, NAME + 4.0), Sense::click());
     response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, is_chosen, name));
     let visuals = ui.style().interact_selectable(&response, is_chosen);
     if is_chosen || response.hovered() || response.has_focus() {
         ui.painter().rect_filled(rect, 3.0, visuals.bg_fill);
     }
-    let picture = Rect::from_min_size(rect.min + Vec2::splat(4.0), THUMBNAIL);
-    let text = Rect::from_min_max(picture.left_bottom(), rect.max);
+    let image = Rect::from_min_size(rect.min + Vec2::splat(4.0), THUMBNAIL);
+    let text = Rect::from_min_max(image.left_bottom(), rect.max);
     match thumbnails.texture(ui.ctx(), role, name) {
         Some(texture) => {
             let whole = Rect::from_min_max(egui::Pos2::ZERO, egui::pos2(1.0, 1.0));
-            ui.painter().image(texture, picture, whole, egui::Color32::WHITE);
+            ui.painter().image(texture, image, whole, egui::Color32::WHITE);
         }
         None => {
             let stroke = Stroke::new(1.0, ui.visuals().weak_text_color());
-            ui.painter().rect_stroke(picture, 2.0, stroke, egui::StrokeKind::Inside);
+            ui.painter().rect_stroke(image, 2.0, stroke, egui::StrokeKind::Inside);
         }
     }
     let label = egui::WidgetText::from(name);
@@ -92,7 +86,7 @@ mod tests {
     use image::imageops;
 
     use crate::window::Window;
-    use crate::window::testing::{picture, window};
+    use crate::window::testing::{screenshot, window};
 
     /// Opens a window that shows the images of its smoke, in a temporary folder.
     fn opened(folder: &std::path::Path) -> Harness<'static, Window> {
@@ -100,7 +94,7 @@ mod tests {
         let path = folder.join("own.json");
         std::fs::write(&path, serde_json::to_string(&preset).unwrap()).unwrap();
         image::RgbaImage::from_pixel(8, 1, image::Rgba([250, 20, 20, 255])).save(folder.join("red.png")).unwrap();
-        std::fs::write(folder.join("broken.png"), "no picture").unwrap();
+        std::fs::write(folder.join("broken.png"), "no image").unwrap();
         let mut harness = window(path.to_str().unwrap(), Vec2::new(1000.0, 900.0), Theme::Dark);
         harness.get_by_label("Smoke").click();
         harness.run_steps(3);
@@ -122,15 +116,15 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let mut harness = opened(folder.path());
         open(&mut harness);
-        let before = picture(&mut harness);
+        let before = screenshot(&mut harness);
         let cell = harness.get_by_label("red.png").rect();
         // A broken file has a name and no thumbnail; decoded images appear.
         for _ in 0..100 {
             harness.step();
             std::thread::sleep(std::time::Duration::from_millis(10));
         }
-        let after = picture(&mut harness);
-        let middle = |picture: &image::RgbaImage| picture.get_pixel(cell.center().x as u32, cell.top() as u32 + 20).0;
+        let after = screenshot(&mut harness);
+        let middle = |image: &image::RgbaImage| image.get_pixel(cell.center().x as u32, cell.top() as u32 + 20).0;
         let [r, g, b, _] = middle(&after);
         assert!(r > 200 && g < 60 && b < 60, "{r} {g} {b}");
         assert!(harness.query_by_label("broken.png").is_some() && harness.query_by_label("diffuse_ember").is_some());
@@ -142,9 +136,9 @@ mod tests {
             harness.step();
             std::thread::sleep(std::time::Duration::from_millis(20));
         }
-        let chosen = picture(&mut harness);
-        let redness = |picture: &image::RgbaImage| {
-            let part = imageops::crop_imm(picture, 50, 100, 500, 400).to_image();
+        let chosen = screenshot(&mut harness);
+        let redness = |image: &image::RgbaImage| {
+            let part = imageops::crop_imm(image, 50, 100, 500, 400).to_image();
             part.pixels().map(|pixel| f64::from(pixel.0[0]) - f64::from(pixel.0[1])).sum::<f64>() / 200_000.0
         };
         assert!(redness(&chosen) > redness(&before) + 1.0, "{} {}", redness(&before), redness(&chosen));
@@ -155,13 +149,13 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let mut harness = opened(folder.path());
         open(&mut harness);
-        let place = |name: &str| -> Rect { harness.get_by_label(name).rect() };
-        let line = place("Others").center().y;
+        let rect = |name: &str| -> Rect { harness.get_by_label(name).rect() };
+        let line = rect("Others").center().y;
         for name in ["diffuse_ink", "red.png"] {
-            assert!(place(name).bottom() < line, "{name}");
+            assert!(rect(name).bottom() < line, "{name}");
         }
         for name in ["scatter_mist", "specular_halo", "coverage_cut", "age_smoke"] {
-            assert!(place(name).top() > line, "{name}");
+            assert!(rect(name).top() > line, "{name}");
         }
     }
 
