@@ -10,6 +10,7 @@
 #import "lib/bounding_box.wgsl"
 #import "lib/coverage.wgsl"
 #import "lib/color.wgsl"
+#import "lib/blending.wgsl"
 
 // True: there is no reduced depth; sprites were compared with the host's own depth.
 override HOST_DEPTH: bool = false;
@@ -80,5 +81,5 @@ fn fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
     if DEBUG_VIEW != DEBUG_VIEW_SOFT_SCATTER && DEBUG_VIEW != DEBUG_VIEW_DIFFUSE {
         light += fire_light(surface, amount);
     }
-    return vec4f(bounded_light(light), 1.0) * covered;
+    return deferred_fragment(ADDITIVE, bounded_light(light), covered);
 }

@@ -7,6 +7,8 @@
 const COVERAGE_MODE_LINEAR: u32 = 0u;
 const COVERAGE_MODE_RAMP: u32 = 1u;
 override COVERAGE_MODE: u32 = COVERAGE_MODE_LINEAR;
+// True: the smoke adds its light, and hides nothing.
+override ADDITIVE: bool = false;
 
 // Fraction of the scene that the smoke hides.
 fn smoke_coverage(amount: f32) -> f32 {

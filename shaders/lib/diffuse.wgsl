@@ -29,14 +29,14 @@ struct Shade {
     own: f32,
 }
 
-// Smoke and scene before the lights of one block.
+// Smoke and scene in front of the lights of one block.
 struct BlockShade {
     block: f32,
     optical_depths: vec3f,
     visible: vec3f,
 }
 
-// Other smoke before sprites. `optical_depths`: towards the lights of the first block.
+// Other smoke in front of sprites. `optical_depths`: towards the lights of the first block.
 fn shade_of_sprites(optical_depths: vec3f) -> Shade {
     var shade: Shade;
     shade.optical_depths = optical_depths;
@@ -79,7 +79,7 @@ fn shade_of_block(slot: f32, shade: Shade, last: BlockShade) -> BlockShade {
     return BlockShade(block, foreign_optical_depths(in_grid, shade.own), visible);
 }
 
-// Fraction of a light that comes past the scene and through the smoke before it.
+// Fraction of a light that comes past the scene and through the smoke in front of it.
 fn shadow_on_light(slot: f32, shade: BlockShade, to_light: vec3f, to_viewer: vec3f) -> vec3f {
     if !SHADOW || slot < 0.5 {
         return vec3f(1.0);

@@ -26,7 +26,7 @@ struct SceneShadow {
 @group(3) @binding(3) var haze_linear_sampler: sampler;
 
 // Fraction of a light that reaches a point through the smoke, linear RGB: multiply the light's diffuse and specular parts.
-// `light`: index in FrameInput::lights. 1 for lights without shadow, and where there is no smoke before the light.
+// `light`: index in FrameInput::lights. 1 for lights without shadow, and where there is no smoke in front of the light.
 fn haze_transmittance(world_position: vec3f, light: u32) -> vec3f {
     var slot = 0u;
     while slot < HAZE_SHADOWED_LIGHTS && haze_scene_shadow.indices[slot / 4u][slot % 4u] != light {

@@ -102,7 +102,7 @@ fn painted_fraction(paint: vec3f) -> f32 {
     return srgb_from_linear(saturate(luminance(paint)));
 }
 
-// Fraction of the smoke's depth range that lies in front of a light: 0 before its near side, 1 behind its far side. (OTEE
+// Fraction of the smoke's depth range that lies in front of a light: 0 on its near side, 1 behind its far side. (OTEE
 // "Specular scattering": fade out the quad as it goes through the bounding box)
 fn specular_scatter_fade(light_depth: f32, smoke_near: f32, smoke_far: f32) -> f32 {
     return saturate((light_depth - smoke_near) / max(smoke_far - smoke_near, 1.0e-4));

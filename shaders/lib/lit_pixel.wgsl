@@ -4,6 +4,7 @@
 #import "lib/smoke_tiles.wgsl"
 #import "lib/coverage.wgsl"
 #import "lib/glow.wgsl"
+#import "lib/blending.wgsl"
 
 // True: adds the glow of lights, which light_target has computed.
 override GLOWS: bool = false;
@@ -26,7 +27,8 @@ fn lit_pixel(pixel: vec2f, has_slopes: bool, texel_size: vec2f, glowing: vec2u) 
         return vec4f(0.0);
     }
     // Light of the texels, weighted by their amounts. Amounts below a millionth are invisible, and must not divide.
-    let smoke = vec4f(bounded_light(lit.rgb / max(amount, 1.0e-6)), 1.0) * smoke_coverage(amount);
+    let light = bounded_light(lit.rgb / max(amount, 1.0e-6));
+    let smoke = deferred_fragment(ADDITIVE, light, smoke_coverage(amount));
     if GLOWS {
         return smoke + vec4f(glow_of_lights(glowing, amount, pixel), 0.0);
     }

@@ -97,7 +97,7 @@ fn sphere_corner(center_radius: vec4f, corner: vec2f, texels_per_pixel: f32) -> 
 
 // Values of a sprite for textures of the accumulation target that only some systems have.
 struct SpriteValues {
-    // Optical depths of the smoke before the sprite towards the lights with shadow, and the sprite's heat.
+    // Optical depths of the smoke in front of the sprite towards the lights with shadow, and the sprite's heat.
     depths_and_heat: vec4f,
     // Color by which the light on it is multiplied.
     tint: vec3f,
@@ -138,7 +138,7 @@ fn sprite_optical_depth(particle: Particle) -> f32 {
     return system.shadow_density * depth / (system.density_reach * system.density_reach);
 }
 
-// Optical depths of the smoke before a particle's sprite, towards the lights with shadow. `center`: view space.
+// Optical depths of the smoke in front of a particle's sprite, towards the lights with shadow. `center`: view space.
 fn optical_depths_of(particle: Particle, center: vec3f) -> vec3f {
     if !SHADOW {
         return vec3f(0.0);

@@ -72,8 +72,8 @@ fn volumetric_density(noise: f32, falloff: f32) -> f32 {
     return saturate(2.0 * noise - 1.0 + falloff) * falloff;
 }
 
-// Place where a step of a march ends, as a fraction of the way through a sphere. `done` is the fraction of the steps. Steps are
-// shortest in the middle, where a volume is densest: 7 of them reach the error of 8 equal ones.
+// Position where a step of a march ends, as a fraction of the way through a sphere. `done` is the fraction of the steps. Steps
+// are shortest in the middle, where a volume is densest: 7 of them reach the error of 8 equal ones.
 fn march_boundary(done: f32) -> f32 {
     let from_middle = 2.0 * done - 1.0;
     let squared = from_middle * from_middle;

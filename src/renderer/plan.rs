@@ -4,8 +4,8 @@ use haze_core::assets::ramp_steps::RampSteps;
 use haze_core::formula::diffuse_bake::baked_size_and_layers;
 use haze_core::glam::UVec2;
 use haze_core::settings::{
-    BlendOrder, DebugView, DepthSource, DiffuseMode, LightingResolution, RenderPath, Settings, Technique, Traversal,
-    Upsample,
+    BlendMode, BlendOrder, DebugView, DepthSource, DiffuseMode, LightingResolution, RenderPath, Settings, Technique,
+    Traversal, Upsample,
 };
 use haze_core::view_setup::{AttachmentSet, ResolvedSettings, Support};
 
@@ -212,6 +212,7 @@ fn deferred<'a>(
     };
     let upsample = accumulate.upsample;
     let coverage = settings.coverage;
+    let is_additive = settings.blend_mode == BlendMode::Additive;
     let drawn = BoundingBoxKey {
         host,
         // Without a depth attachment, the hardware cannot hide the box behind the scene, so front faces have no
@@ -233,7 +234,8 @@ fn deferred<'a>(
         overdraw: false,
     };
     let has_slopes = lights_target && upsample == Upsample::Guided && settings.scale > 1;
-    let pixel = LitPixelKey { glows: computes_texels && glows, upsample, coverage, ramp_filter, exact_filtering };
+    let glows_in_pixels = computes_texels && glows;
+    let pixel = LitPixelKey { glows: glows_in_pixels, upsample, coverage, is_additive, ramp_filter, exact_filtering };
     let slope_cells = has_slopes && !exact_filtering;
     // One image for all debug views that show it.
     let same_pixels = !glows || debug_views.iter().all(|view| view.shows_glow() || !view.shows_lit_smoke());
@@ -263,7 +265,15 @@ fn deferred<'a>(
                 .then_some(Planned::drawn(MarkCellsKey { slopes: has_slopes })),
             upsample_lit: computes_pixels.then_some(Planned::computed(UpsampleLitKey { slope_cells, pixel })),
         },
-        transfer: TransferKey { drawn, lighting, upsample, host_depth, debug_view: DebugView::Final, coverage },
+        transfer: TransferKey {
+            drawn,
+            lighting,
+            upsample,
+            host_depth,
+            debug_view: DebugView::Final,
+            coverage,
+            is_additive,
+        },
         transfer_lit: lights_target.then_some(TransferLitKey {
             drawn,
             tiles: Tiles::All,

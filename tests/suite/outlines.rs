@@ -20,7 +20,7 @@ const SPACING: f32 = 0.45;
 /// Way of a bar's top to the right, for each metre of height.
 const SLANT: f32 = 0.15;
 
-/// White smoke before a dark sky.
+/// White smoke in front of a dark sky.
 fn smoke(size: UVec2) -> Shot {
     let mut shot = Shot::load("column", size).unwrap();
     shot.preset.environment.scene = SceneName::Empty;

@@ -395,6 +395,8 @@ fn gpu_and_cpu_agree_on_every_pipeline_setting() {
         s.accumulate.order = BlendOrder::Sorted;
     };
     add("lit target", "rgba8", lit(&rgba8));
+    add("deferred", "additive", with(|s| s.blend_mode = BlendMode::Additive));
+    add("lit target", "additive", lit(&|s| s.blend_mode = BlendMode::Additive));
     for &mode in BlendMode::ALL {
         add("forward", mode.name(), with(|s| (s.path, s.blend_mode) = (RenderPath::Forward, mode)));
     }

@@ -53,7 +53,7 @@ impl SampleGroups {
     }
 }
 
-/// Image of a scene and the smoke before it, with what outlines are completed from.
+/// Image of a scene and the smoke in front of it, with what outlines are completed from.
 pub(crate) struct Outlines<'a> {
     pub groups: &'a Image<SampleGroups>,
     pub coefficients: Vec4,

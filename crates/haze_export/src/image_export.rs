@@ -8,6 +8,8 @@ use std::path::Path;
 use glam::UVec2;
 use haze::FieldError;
 use haze_core::error::{AssetError, Error};
+#[cfg(not(target_arch = "wasm32"))]
+use haze_core::settings::BlendMode;
 use haze_demo::shot::Shot;
 #[cfg(not(target_arch = "wasm32"))]
 use haze_preset::AnimatedPreset;
@@ -154,6 +156,12 @@ impl Frames {
 /// True if a system burns.
 pub fn burns(preset: &Preset) -> bool {
     preset.systems.iter().any(|system| system.settings.burns())
+}
+
+/// True if a system adds its light and hides nothing.
+#[cfg(not(target_arch = "wasm32"))]
+pub fn is_additive(preset: &Preset) -> bool {
+    preset.systems.iter().any(|system| system.settings.blend_mode == BlendMode::Additive)
 }
 
 /// Text of the progress of one image of many.

@@ -59,7 +59,7 @@ fn is_always_empty(preset: &Preset) -> bool {
 #[cfg_attr(test, derive(serde::Deserialize))]
 #[serde(rename_all = "snake_case")]
 pub enum Alpha {
-    /// The smoke's own color, not multiplied by alpha.
+    /// The smoke's own color, not multiplied by alpha. Smoke of blend mode `additive` has an alpha of 0, and does not show.
     #[default]
     Straight,
     /// The smoke as before black: color times alpha, in linear light, and glow that adds light where alpha is low.

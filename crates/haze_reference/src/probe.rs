@@ -96,7 +96,7 @@ pub struct LightProbe {
 /// Shadow of a light at a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShadowProbe {
-    /// Lookup coordinate of the shadow ramp, 0 to 1: smoke before the light, and angle between light and viewer.
+    /// Lookup coordinate of the shadow ramp, 0 to 1: smoke in front of the light, and angle between light and viewer.
     pub coordinate: Vec2,
     /// Fraction of the light that comes past the scene and through the smoke.
     pub transmittance: Vec3,

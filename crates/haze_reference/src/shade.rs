@@ -19,7 +19,7 @@ impl Shade {
     pub const NONE: Self =
         Self { optical_depths: [Vec3::ZERO; LIGHT_BLOCKS], visible: [Vec3::ONE; LIGHT_BLOCKS], openness: Vec2::ONE };
 
-    /// Other smoke before sprites. `optical_depths`: towards the lights of the first block.
+    /// Other smoke in front of sprites. `optical_depths`: towards the lights of the first block.
     pub fn of_sprites(optical_depths: Vec3) -> Self {
         let mut shade = Self::NONE;
         shade.optical_depths[0] = optical_depths;

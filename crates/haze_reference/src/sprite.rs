@@ -54,7 +54,7 @@ pub struct SpriteSetup {
     pub erosion: f32,
     /// Texels of the grain's first octave per texel of the target.
     pub fineness: f32,
-    /// Optical depths of the smoke before the sprite, towards the lights with shadow.
+    /// Optical depths of the smoke in front of the sprite, towards the lights with shadow.
     pub optical_depths: Vec3,
     /// Heat, 0 to 1.
     pub heat: f32,
@@ -148,7 +148,7 @@ impl VisibleSystem<'_> {
         })
     }
 
-    /// Optical depths of the smoke before a particle's sprite, towards the lights with shadow. `center`: view space.
+    /// Optical depths of the smoke in front of a particle's sprite, towards the lights with shadow. `center`: view space.
     fn optical_depths_of(&self, particle: &Particle, center: Vec3) -> Vec3 {
         let system = &self.system;
         let Some(depths) = self.optical_depths.as_ref().filter(|_| system.shadow_strength > 0.0) else {

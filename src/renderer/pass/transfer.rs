@@ -32,6 +32,7 @@ pub(crate) struct TransferKey {
     pub host_depth: bool,
     pub debug_view: DebugView,
     pub coverage: CoverageMode,
+    pub is_additive: bool,
 }
 
 /// State of the host's pass and the faces with which a system's bounding box is drawn.
@@ -84,6 +85,7 @@ impl PipelineKey for TransferKey {
             enum_constant!("DEBUG_VIEW", self.debug_view),
             bool_constant("HOST_DEPTH", self.host_depth),
             enum_constant!("COVERAGE_MODE", self.coverage),
+            bool_constant("ADDITIVE", self.is_additive),
         ]))
     }
 }

@@ -40,6 +40,7 @@ pub(crate) struct LitPixelKey {
     pub glows: bool,
     pub upsample: Upsample,
     pub coverage: CoverageMode,
+    pub is_additive: bool,
     pub ramp_filter: RampFilter,
     pub exact_filtering: bool,
 }
@@ -51,6 +52,7 @@ impl LitPixelKey {
             bool_constant("GLOWS", self.glows),
             enum_constant!("UPSAMPLE", self.upsample),
             enum_constant!("COVERAGE_MODE", self.coverage),
+            bool_constant("ADDITIVE", self.is_additive),
             enum_constant!("RAMP_FILTER", self.ramp_filter),
             bool_constant("EXACT_FILTERING", self.exact_filtering),
         ];

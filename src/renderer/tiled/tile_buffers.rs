@@ -31,7 +31,7 @@ pub(super) struct TileBuffers {
     /// Indirect dispatch size for the visible sprites.
     pub workgroups: wgpu::Buffer,
     sprites: wgpu::Buffer,
-    /// Optical depths of the smoke before each sprite; one element if no system receives shadow.
+    /// Optical depths of the smoke in front of each sprite; one element if no system receives shadow.
     sprite_values: wgpu::Buffer,
     rects: wgpu::Buffer,
     pub sort: SortBuffers,

@@ -139,9 +139,9 @@ mod tests {
     fn reasons_are_unique_and_apply_to_their_fields_only() {
         let preset = Preset { systems: vec![PresetSystem::default()], ..Preset::default() };
         let reason = |path: &str| no_effect_reason(&preset, path, UVec2::new(640, 360));
-        assert_eq!(reason("systems[0].settings.blend_mode"), Some("forward only"));
+        assert_eq!(reason("systems[0].settings.exponential.density"), Some("only with technique density"));
         assert_eq!(reason("systems[0].settings.boost"), None);
-        assert_eq!(reason("systems[1].settings.blend_mode"), None);
+        assert_eq!(reason("systems[1].settings.exponential.density"), None);
         assert_eq!(reason("camera.fov"), None);
         let mut reasons: Vec<_> = SYSTEM_RULES.iter().map(|rule| rule.reason).collect();
         reasons.sort_unstable();

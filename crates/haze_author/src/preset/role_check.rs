@@ -48,7 +48,7 @@ fn check_shadow_ramp(ramp: &Ramp) -> Option<String> {
     let size = ramp.size();
     let sum = |x: u32| (0..size.y).map(|y| ramp.texel(UVec2::new(x, y)).element_sum()).sum::<f32>();
     let dark = || {
-        let first = "darker in the first column, where no smoke is before the light, than in the last";
+        let first = "darker in the first column, where no smoke is in front of the light, than in the last";
         format!("{first}; expected the lightest column there: thin smoke is lit by full light")
     };
     (sum(0) < sum(size.x - 1)).then(dark)

@@ -85,7 +85,7 @@ pub fn painted_fraction(paint: Vec3) -> f32 {
     srgb_from_linear(saturate(luminance(paint)))
 }
 
-/// Fraction of the smoke's depth range that lies in front of a light: 0 before its near side, 1 behind its far side. (OTEE
+/// Fraction of the smoke's depth range that lies in front of a light: 0 on its near side, 1 behind its far side. (OTEE
 /// "Specular scattering")
 pub fn specular_scatter_fade(light_depth: f32, smoke_near: f32, smoke_far: f32) -> f32 {
     saturate((light_depth - smoke_near) / (smoke_far - smoke_near).max(1.0e-4))

@@ -68,7 +68,7 @@ pub fn volumetric_density(noise: f32, falloff: f32) -> f32 {
     saturate(2.0 * noise - 1.0 + falloff) * falloff
 }
 
-/// Place where a step of a march ends, as a fraction of the way through a sphere. `done` is the fraction of the steps. Steps
+/// Position where a step of a march ends, as a fraction of the way through a sphere. `done` is the fraction of the steps. Steps
 /// are shortest in the middle, where a volume is densest: 7 of them reach the error of 8 equal ones.
 pub fn march_boundary(done: f32) -> f32 {
     let from_middle = 2.0 * done - 1.0;

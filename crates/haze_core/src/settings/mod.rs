@@ -75,14 +75,14 @@ impl RenderPath {
 }
 
 choice! {
-    /// Blend mode of forward sprites: OTEE's three.
+    /// Blend mode of smoke over the scene: OTEE's three.
     BlendMode {
-        /// Grayish smoke: covers the background.
+        /// Smoke: covers the background.
         #[default]
         Alpha = "alpha",
-        /// Fire: adds light, hides nothing.
+        /// Glow alone, which hides nothing: magic, holograms, sparks in front of a bright sky.
         Additive = "additive",
-        /// Dark smoke: darkens the background.
+        /// Dark smoke: darkens the background. On the path `forward`; other paths draw `alpha`.
         Multiply = "multiply",
     }
 }
@@ -161,7 +161,7 @@ settings! {
     pub struct Settings {
         /// Rendering path: its cost, and with `forward`, its lighting too.
         path: RenderPath = RenderPath::Auto, choice;
-        /// Blend mode of forward sprites. Deferred paths have a blend of their own.
+        /// Blend over the scene: smoke that covers what is behind it, or glow alone, which hides nothing however thick it is.
         blend_mode: BlendMode = BlendMode::Alpha, choice;
         /// Systems of a higher priority are drawn over those of a lower one, wherever they are: sparks over the smoke
         /// around them. Those of equal priority are drawn far to near, by the middle of their boxes.

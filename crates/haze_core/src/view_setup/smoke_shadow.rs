@@ -129,7 +129,7 @@ impl SmokeShadow {
         let resolution = resolution.min(max_volume_depth / block_count(light_blocks, has_visibility, has_openness));
         let grid = SmokeGrid::new(&around, resolution);
         let placed = chosen.map(|index| match index.and_then(|index| lights.get(index)) {
-            // A light in the middle of nothing: no smoke is before it.
+            // A light in the middle of nothing: no smoke is in front of it.
             None => Vec4::ZERO,
             Some(light) if light.kind == LightKind::Directional => {
                 (-light.direction.normalize_or(Vec3::NEG_Y)).extend(1.0)

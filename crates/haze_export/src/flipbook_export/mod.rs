@@ -19,7 +19,7 @@ use haze_preset::write_file;
 
 use crate::backend::Backend;
 use crate::engine::Engine;
-use crate::image_export::{ExportProgress, Frames, image_label, stopped_before_writing};
+use crate::image_export::{ExportProgress, Frames, image_label, is_additive, stopped_before_writing};
 use crate::image_format::{Alpha, Emission};
 use crate::png_stream::EncodedPng;
 pub use cut_smoke::CutSmoke;
@@ -112,8 +112,9 @@ impl FlipbookExport {
             Ok(layers.mixed(&at(count + index, done + 1).await?, fraction))
         };
         let FlipbookOptions { engine, cells, emission, has_six_way, effort, .. } = options;
-        let contains_fire = burns && emission == Emission::Contained;
-        let alpha = options.alpha.unwrap_or(if contains_fire { Alpha::Premultiplied } else { Alpha::Straight });
+        // Light that hides nothing is lost in straight alpha.
+        let glows = burns && emission == Emission::Contained || is_additive(&shot.preset);
+        let alpha = options.alpha.unwrap_or(if glows { Alpha::Premultiplied } else { Alpha::Straight });
         let tonemap = display_transform(shot).tonemap;
         let layout = SheetLayout { engine, frame: shot.size, cells, alpha, emission, tonemap, effort, folder };
         // Image halfway between a frame and the next, encoded.

@@ -2,7 +2,7 @@ use glam::{IVec2, UVec2, Vec2, Vec3, Vec4, Vec4Swizzles};
 use haze_core::assets::image::{Image, read_png};
 use haze_core::formula::color::{linear_from_srgb, luminance, srgb_from_linear};
 use haze_core::formula::tonemap::DisplayTransform;
-use haze_core::settings::Tonemap;
+use haze_core::settings::{BlendMode, Tonemap};
 use haze_demo::tonemap_pass::{encoded, rgba8};
 use haze_preset::{CompressionEffort, Ease, KeyValue, Keyframe, Track};
 use image::RgbaImage;
@@ -199,6 +199,10 @@ fn flipbooks_are_premultiplied_if_a_system_burns_at_any_time() {
         vec![Track { setting: "systems[0].settings.fire.intensity".into(), keys, ..Track::default() }];
     let unset = FlipbookOptions { alpha: None, ..options(Engine::Unity) };
     assert_eq!(Flipbook::new(&fire, &frames, unset).numbers.alpha, Alpha::Premultiplied);
+    // Nor is glow that hides nothing.
+    let mut glow = Shot::load("column", UVec2::splat(16)).unwrap();
+    glow.preset.systems[0].settings.blend_mode = BlendMode::Additive;
+    assert_eq!(Flipbook::new(&glow, &frames, unset).numbers.alpha, Alpha::Premultiplied);
 }
 
 #[test]

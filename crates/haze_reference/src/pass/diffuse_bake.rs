@@ -141,7 +141,7 @@ impl VisibleSystem<'_> {
         }
     }
 
-    /// Fraction of a light that comes through the smoke before it.
+    /// Fraction of a light that comes through the smoke in front of it.
     pub fn shadow_on_light(&self, light: &LightUniform, to_light: Vec3, position: Vec3, shade: &Shade) -> Vec3 {
         if self.system.shadow_strength <= 0.0 || light.shadow_slot < 0.5 {
             return Vec3::ONE;

@@ -2,6 +2,7 @@
 
 use glam::{IVec2, Vec2, Vec3, Vec4, Vec4Swizzles};
 use haze_core::assets::image::Image;
+use haze_core::formula::blending::deferred_fragment;
 use haze_core::formula::color::{bounded_light, overdraw_color};
 use haze_core::formula::diffuse_bake::{cube_coordinate, motif_position, sample_baked, spherical_harmonics};
 use haze_core::formula::fire::fire_from_moments;
@@ -11,7 +12,7 @@ use haze_core::formula::ramp::sample_ramp_2d;
 use haze_core::formula::saturate;
 use haze_core::formula::six_way::{SixWay, normal_from_six_way};
 use haze_core::formula::uniforms::LightUniform;
-use haze_core::settings::{CoverageMode, DebugView, DiffuseMode};
+use haze_core::settings::{BlendMode, CoverageMode, DebugView, DiffuseMode};
 use haze_core::view_setup::AttachmentRole;
 
 use crate::accumulated::{AccumulatedTarget, Attachments};
@@ -117,7 +118,7 @@ impl AccumulatedTarget<'_> {
         }
         let covered = self.coverage(amount);
         if self.is_lit {
-            return Some(bounded_light(accumulated.xyz() / amount.max(1.0e-6)).extend(1.0) * covered);
+            return Some(self.blended(bounded_light(accumulated.xyz() / amount.max(1.0e-6)), covered));
         }
         let surface = self.surface_at(accumulated, pixel);
         if debug_view == DebugView::Normals {
@@ -137,7 +138,12 @@ impl AccumulatedTarget<'_> {
         if !matches!(debug_view, DebugView::SoftScatter | DebugView::Diffuse) {
             light += self.fire_light(&surface, amount);
         }
-        Some(bounded_light(light).extend(1.0) * covered)
+        Some(self.blended(bounded_light(light), covered))
+    }
+
+    /// Premultiplied light and coverage as the blend unit gets them.
+    pub fn blended(&self, light: Vec3, covered: f32) -> Vec4 {
+        deferred_fragment(self.visible.settings.blend_mode == BlendMode::Additive, light, covered)
     }
 
     /// Fraction of the scene that the smoke hides.

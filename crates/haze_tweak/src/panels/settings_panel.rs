@@ -224,7 +224,7 @@ fn smoke(
 }
 
 /// Groups of settings that only programmers need.
-const FOR_PROGRAMMERS: [&str; 4] = ["path", "blend_mode", "accumulate", "debug"];
+const FOR_PROGRAMMERS: [&str; 3] = ["path", "accumulate", "debug"];
 
 fn advanced(ui: &mut Ui, context: &mut RowContext<'_>, preset: &mut Preset, index: usize) {
     let Some(system) = preset.systems.get_mut(index) else { return };
@@ -241,7 +241,7 @@ mod tests {
     use eframe::egui::{Role, Theme, Vec2};
     use egui_kittest::kittest::{NodeT as _, Queryable as _};
     use egui_kittest::{Harness, Node};
-    use haze_core::settings::FieldValue;
+    use haze_core::settings::{FieldValue, RenderPath};
 
     use crate::document::display_names::display_name;
     use crate::panels::rows::value_text::shown_value;
@@ -256,15 +256,16 @@ mod tests {
     #[test]
     fn a_control_without_effect_is_disabled_and_shows_the_reason() {
         let mut harness = window("column", Vec2::new(1000.0, 640.0), Theme::Dark);
+        harness.state_mut().session.document.preset.systems[0].settings.path = RenderPath::Forward;
         harness.get_by_label("Advanced").click();
         harness.run_steps(3);
         let is_gray = |name| control(&harness, name).accesskit_node().is_disabled();
-        assert!(is_gray("Blend mode") && !is_gray("Technique"));
+        assert!(is_gray("Coverage") && !is_gray("Technique"));
         // The name is to the left of the control.
-        let position = control(&harness, "Blend mode").rect().left_center();
+        let position = control(&harness, "Coverage").rect().left_center();
         harness.hover_at(position - Vec2::new(80.0, 0.0));
         harness.run_steps(8);
-        assert!(harness.query_all_by_label_contains("No effect now: forward only.").next().is_some());
+        assert!(harness.query_all_by_label_contains("No effect now: deferred only.").next().is_some());
     }
 
     #[test]
@@ -273,8 +274,9 @@ mod tests {
         harness.get_by_label("Advanced").click();
         harness.run_steps(3);
         let position = |name: &str| harness.get_all_by_label(name).next().unwrap().rect().top();
-        let before = ["Technique", "Boost", "Sprite", "Volumetric"].map(position).into_iter().fold(0.0, f32::max);
-        assert!(["Path", "Blend mode", "Smoke buffer"].into_iter().all(|name| position(name) > before));
+        let before =
+            ["Blend mode", "Technique", "Boost", "Sprite", "Volumetric"].map(position).into_iter().fold(0.0, f32::max);
+        assert!(["Path", "Smoke buffer"].into_iter().all(|name| position(name) > before));
         for name in super::SMOKE_TAB_GROUPS {
             // The strip below the image has labels of its own.
             let is_row = |node: &Node<'_>| node.rect().left() > 900.0 && node.rect().bottom() < 660.0;

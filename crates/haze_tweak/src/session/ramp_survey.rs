@@ -54,7 +54,7 @@ fn is_near_2d(a: Vec2, b: Vec2) -> bool {
 /// Ramp that is looked up by two coordinates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TwoAxisRamp {
-    /// Smoke before the light, and angle between light and viewer.
+    /// Smoke in front of the light, and angle between light and viewer.
     Shadow,
     /// Squared distance, and amount.
     Specular,

@@ -256,6 +256,7 @@ mod tests {
             ("sun", "lights[1]."),
             ("fog", "thickness"),
             ("brightness", "camera.exposure"),
+            ("glow", "blend_mode"),
             ("gravity", "emitter.buoyancy"),
             ("color", "color"),
             ("detail", "grain.tiles"),

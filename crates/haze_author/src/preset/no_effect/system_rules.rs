@@ -32,7 +32,6 @@ pub const SYSTEM_RULES: &[NoEffectRule<PresetSystem>] = &[
             "particle_files.flipbook_rate",
         ],
     ),
-    rule("forward only", |s, _| !s.settings.is_forward(), &["settings.blend_mode"]),
     rule(
         "deferred only",
         |s, _| s.settings.is_forward(),

@@ -10,7 +10,7 @@ use crate::ramp::ramp_recipe::RampRecipe;
 /// Number of free parameters of a fit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ShadowShape {
-    /// Number of stops per row, at least 2: from no smoke before the light to endless smoke.
+    /// Number of stops per row, at least 2: from no smoke in front of the light to endless smoke.
     pub stops: u32,
     /// Number of rows: from a light on the viewer's side to a light behind the smoke.
     pub rows: u32,
@@ -25,7 +25,7 @@ impl Default for ShadowShape {
 /// Smoke under one light, pixel by pixel: as drawn without shadow, and as it should be.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ShadedLight {
-    /// Light of the smoke without shadow, as bright as it should be where no smoke is before the light.
+    /// Light of the smoke without shadow, as bright as it should be where no smoke is in front of the light.
     pub unshaded: Vec<Vec3>,
     /// Lookup positions in the shadow ramp.
     pub positions: Vec<Vec2>,

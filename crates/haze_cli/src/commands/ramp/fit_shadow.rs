@@ -28,7 +28,7 @@ pub struct Arguments {
     /// Lighting of the puffs. Each has an error of its own by angle, which the ramp makes good.
     #[arg(long, value_parser = choices::<Lighting>(), default_value = Lighting::default().name())]
     lighting: Lighting,
-    /// Stops per row, from no smoke before the light to endless smoke.
+    /// Stops per row, from no smoke in front of the light to endless smoke.
     #[arg(long, default_value_t = ShadowShape::default().stops, allow_hyphen_values = true)]
     #[arg(value_parser = whole_number(2..=64))]
     stops: u32,

@@ -86,7 +86,7 @@ pub fn left_out(system: &PresetSystem) -> Vec<(&'static str, &'static str)> {
             "`technique`",
             "opacity is that of the sprite's image, not of smoke of some thickness: it may be much thinner",
         ),
-        (settings.is_forward() && settings.blend_mode != BlendMode::Alpha, "`blend_mode`", "blended by alpha"),
+        (settings.blend_mode != BlendMode::Alpha, "`blend_mode`", "blended by alpha"),
     ];
     rules.into_iter().filter(|(holds, ..)| *holds).map(|(_, name, text)| (name, text)).collect()
 }
