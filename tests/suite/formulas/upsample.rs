@@ -202,7 +202,7 @@ fn carried() -> Vec<Formula> {
             mutants: &[
                 ("(depths - depth) * (2.0", "(depths - depth) * (1.0"),
                 ("upsample_weights(UPSAMPLE_BILINEAR, fraction", "upsample_weights(UPSAMPLE_BILINEAR, fraction.yx"),
-                ("sigmas * sigmas) + 1.0e-4);\n}\n\n// Share", "sigmas * sigmas) + 1.0e-2);\n}\n\n// Share"),
+                ("sigmas * sigmas) + 1.0e-4);\n}\n\n// Fraction", "sigmas * sigmas) + 1.0e-2);\n}\n\n// Fraction"),
             ],
         },
         Formula {
