@@ -80,7 +80,7 @@ fn presets_are_listed_checked_and_described() {
     let shown = text(&["preset", "show", "idle.json"]);
     let line = |field: &str| shown.lines().find(|line| line.starts_with(&format!("systems[0].{field} "))).unwrap();
     assert!(line("settings.boost").ends_with(" 2.0                    default 3.0"), "{shown}");
-    assert!(line("settings.accumulate.downscale").ends_with(" 2                      default"), "{shown}");
+    assert!(line("settings.accumulate.opacity").ends_with(" 1.0                    default"), "{shown}");
     assert!(line("settings.coverage").ends_with("default \"linear\"; no effect: deferred only"), "{shown}");
     assert_eq!(text(&["preset", "show", "--changed", "idle.json"]).lines().count(), 5);
     assert!(text(&["preset", "schema"]).contains("\"soft_fade\""));
