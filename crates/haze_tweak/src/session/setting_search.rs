@@ -60,7 +60,8 @@ pub struct SearchResult {
 }
 
 /// Words that no setting has, or few, and words of the settings that come nearest.
-const SYNONYMS: [(&str, &[&str]); 26] = [
+const SYNONYMS: [(&str, &[&str]); 27] = [
+    ("additive", &["blend"]),
     ("alpha", &["opacity", "thickness"]),
     ("animation", &["frame", "flipbook"]),
     ("blur", &["softness", "scale"]),
@@ -256,7 +257,7 @@ mod tests {
             ("sun", "lights[1]."),
             ("fog", "thickness"),
             ("brightness", "camera.exposure"),
-            ("glow", "blend_mode"),
+            ("additive", "settings.blend_mode"),
             ("gravity", "emitter.buoyancy"),
             ("color", "color"),
             ("detail", "grain.tiles"),
