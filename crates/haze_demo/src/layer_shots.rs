@@ -80,11 +80,11 @@ mod tests {
         let camera = &shot.preset.camera;
         let forward = (camera.target - camera.position).normalize();
         let right = forward.cross(Vec3::Y).normalize();
-        let depth = |place: Vec3| (place - camera.position).dot(forward);
+        let depth = |point: Vec3| (point - camera.position).dot(forward);
         // Square pixels: the height of the view is that of its field of view.
         let pixels = 0.5 * shot.size.y as f32 / (0.5 * camera.fov.to_radians()).tan();
         let along = |axis: Vec3| {
-            let pixel = |place: Vec3| (place - camera.position).dot(axis) / depth(place) * pixels;
+            let pixel = |point: Vec3| (point - camera.position).dot(axis) / depth(point) * pixels;
             pixel(position + displacement) - pixel(position)
         };
         match scalar {

@@ -99,17 +99,17 @@ mod tests {
     #[test]
     fn all_points_of_a_layer_move_and_those_on_the_ground_stay_there() {
         let wisps = find_layer("LAYER", "magic_wisps").unwrap();
-        let place = Vec3::new(1.0, 2.0, 3.0);
-        let moved = wisps.at(place).emitter;
-        assert_eq!(moved.position, wisps.system.emitter.position + place);
-        assert_eq!(moved.attractor, wisps.system.emitter.attractor + place);
-        let source = Emitter { position: place, ..Emitter::default() };
+        let offset = Vec3::new(1.0, 2.0, 3.0);
+        let moved = wisps.at(offset).emitter;
+        assert_eq!(moved.position, wisps.system.emitter.position + offset);
+        assert_eq!(moved.attractor, wisps.system.emitter.attractor + offset);
+        let source = Emitter { position: offset, ..Emitter::default() };
         assert_eq!(wisps.at_source(&source).emitter.position, moved.position);
         let ring = find_layer("LAYER", "shock_ring").unwrap();
-        let on_roof = ring.at(place).emitter;
+        let on_roof = ring.at(offset).emitter;
         assert!((on_roof.floor - ring.system.emitter.floor - 2.0).abs() < 1.0e-6);
         let below = ring.at_source(&source).emitter;
-        assert_eq!(below.position, ring.system.emitter.position + place.with_y(0.0));
+        assert_eq!(below.position, ring.system.emitter.position + offset.with_y(0.0));
         assert!((below.floor - ring.system.emitter.floor).abs() < 1.0e-6);
     }
 }

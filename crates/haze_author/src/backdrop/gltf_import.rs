@@ -278,10 +278,10 @@ impl Import {
                     return Err(format!("{node} names corner {index} of {count}; expected a whole file"));
                 }
                 let positions = indices.map(|index| world.transform_point3(shape.positions[index]));
-                let is_far = |place: &Vec3| !place.is_finite() || place.abs().max_element() > MAX_DISTANCE;
-                if let Some((index, place)) = indices.iter().zip(&positions).find(|(_, place)| is_far(place)) {
+                let is_far = |corner: &Vec3| !corner.is_finite() || corner.abs().max_element() > MAX_DISTANCE;
+                if let Some((index, corner)) = indices.iter().zip(&positions).find(|(_, corner)| is_far(corner)) {
                     let expected = format!("finite numbers up to {MAX_DISTANCE} m from the origin");
-                    return Err(format!("corner {index} of {node} is at {place}; expected {expected}"));
+                    return Err(format!("corner {index} of {node} is at {corner}; expected {expected}"));
                 }
                 let across = (positions[1] - positions[0]).cross(positions[2] - positions[0]);
                 if across == Vec3::ZERO {

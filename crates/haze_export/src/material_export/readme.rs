@@ -102,7 +102,7 @@ fn steps(engine: Engine, system: &PresetSystem, snippet: &Snippet) -> String {
         ),
         Engine::Godot => godot_steps(system, &names("", "haze_"), burns),
         Engine::Three => {
-            let heat = if burns { "; the age is the place in the heat ramp" } else { "" };
+            let heat = if burns { "; the age is the position in the heat ramp" } else { "" };
             let scale = if burns { ", `material.numbers.heat.value` their heat" } else { "" };
             format!(
                 "## In three.js\n\n\
@@ -145,7 +145,7 @@ fn steps(engine: Engine, system: &PresetSystem, snippet: &Snippet) -> String {
 }
 
 fn godot_steps(system: &PresetSystem, parameters: &str, burns: bool) -> String {
-    let heat = if burns { "; the age is the place in the heat ramp" } else { "" };
+    let heat = if burns { "; the age is the position in the heat ramp" } else { "" };
     let material = format!(
         "`haze_material.gdshader` is the shader of a *ShaderMaterial* for quads: it turns them towards the camera, by the angle of \
          each particle, and blends the frames of the sprite{heat}. The color of a particle multiplies the light on it, its alpha the \

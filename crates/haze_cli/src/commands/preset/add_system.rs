@@ -59,5 +59,5 @@ fn parse_position(text: &str) -> Result<Vec3, String> {
     let position = numbers.and_then(|numbers| <[f32; 3]>::try_from(numbers).ok()).map(Vec3::from);
     position
         .filter(|position| position.is_finite())
-        .ok_or_else(|| format!("{text:?} is not a place; expected X,Y,Z in metres, for example 1,0,-2.5"))
+        .ok_or_else(|| format!("{text:?} is not a position; expected X,Y,Z in metres, for example 1,0,-2.5"))
 }
