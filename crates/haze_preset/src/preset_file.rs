@@ -349,7 +349,7 @@ mod tests {
         assert_eq!(at_rest.settings.exponential, Exponential { density: 5.0 });
         assert_eq!((at_rest.settings.debug.draw_count, at_rest.settings.sprite.size), (3, 2.0));
         assert_eq!(at_rest.particle_files.up, crate::UpAxis::Z);
-        assert_eq!(at_rest.emitter.small_fraction, 0.3);
+        assert!((at_rest.emitter.small_fraction - 0.3).abs() < 1.0e-6);
         let names: Vec<_> = preset.animation.iter().map(|track| track.setting.as_str()).collect();
         let expected = [
             "systems[0].settings.accumulate.downscale",

@@ -74,7 +74,8 @@ impl AccumulatedTarget<'_> {
         }
         let amount = if self.is_lit { self.sample_lit(pixel).w } else { self.sample_accumulated(pixel).w };
         // A coarse target may have smoke at a thin surface that is in front of all smoke.
-        let is_in_front = visible.scene_view_depth(pixel.floor().as_ivec2()) < visible.system.smoke_near;
+        let is_in_front =
+            visible.system.scale > 1 && visible.scene_view_depth(pixel.floor().as_ivec2()) < visible.system.smoke_near;
         if amount <= 0.0 || is_in_front {
             return None;
         }
