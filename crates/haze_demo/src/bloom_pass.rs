@@ -3,7 +3,7 @@
 use glam::UVec2;
 
 use super::bloom::levels;
-use super::scene_pipeline::{COLOR_FORMAT, default_view, texture};
+use super::scene_pipeline::{COLOR_FORMAT, ScenePipeline, default_view, texture};
 
 /// Pipelines of the passes, shared by all renderers of a device.
 #[derive(Debug)]
@@ -18,7 +18,7 @@ pub struct BloomPass {
 #[derive(Debug)]
 pub struct BloomLevels {
     image: wgpu::Texture,
-    from_picture: wgpu::BindGroup,
+    from_image: wgpu::BindGroup,
     /// Finest first.
     levels: Vec<BloomLevel>,
 }
@@ -54,47 +54,27 @@ impl BloomPass {
                 count: None,
             }],
         });
-        let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: Some("demo bloom"),
-            bind_group_layouts: &[Some(&layout)],
-            immediate_size: 0,
-        });
-        let pipeline = |entry_point, blend| {
-            device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-                label: Some("demo bloom"),
-                layout: Some(&pipeline_layout),
-                vertex: wgpu::VertexState {
-                    module: &module,
-                    entry_point: Some("vertex"),
-                    compilation_options: wgpu::PipelineCompilationOptions::default(),
-                    buffers: &[],
-                },
-                primitive: wgpu::PrimitiveState::default(),
-                depth_stencil: None,
-                multisample: wgpu::MultisampleState::default(),
-                fragment: Some(wgpu::FragmentState {
-                    module: &module,
-                    entry_point: Some(entry_point),
-                    compilation_options: wgpu::PipelineCompilationOptions::default(),
-                    targets: &[Some(wgpu::ColorTargetState {
-                        format: COLOR_FORMAT,
-                        blend,
-                        write_mask: wgpu::ColorWrites::COLOR,
-                    })],
-                }),
-                multiview_mask: None,
-                cache: None,
-            })
+        let pipeline = |fragment, blend| {
+            let groups = [Some(&layout)];
+            let fragment = Some((fragment, &[COLOR_FORMAT][..]));
+            ScenePipeline { groups: &groups, vertex: "vertex", buffers: &[], fragment, depth: false, blend }
+                .create(device, &module)
         };
         let by_constant = wgpu::BlendComponent {
             src_factor: wgpu::BlendFactor::Constant,
             dst_factor: wgpu::BlendFactor::OneMinusConstant,
             operation: wgpu::BlendOperation::Add,
         };
+        // Alpha of the image stays.
+        let kept = wgpu::BlendComponent {
+            src_factor: wgpu::BlendFactor::Zero,
+            dst_factor: wgpu::BlendFactor::One,
+            operation: wgpu::BlendOperation::Add,
+        };
         Self {
             device: device.clone(),
             halve: pipeline("halve_fragment", None),
-            double: pipeline("double_fragment", Some(wgpu::BlendState { color: by_constant, alpha: by_constant })),
+            double: pipeline("double_fragment", Some(wgpu::BlendState { color: by_constant, alpha: kept })),
             layout,
         }
     }
@@ -109,7 +89,7 @@ impl BloomPass {
         };
         BloomLevels {
             image: image.clone(),
-            from_picture: self.bind(&default_view(image)),
+            from_image: self.bind(&default_view(image)),
             levels: levels(size).into_iter().map(level).collect(),
         }
     }
@@ -124,8 +104,8 @@ impl BloomPass {
 
     /// Adds bloom to the image. `strength`: fraction of the light that spreads, 0..=1.
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder, levels: &BloomLevels, strength: f32) {
-        let BloomLevels { image, from_picture, levels } = levels;
-        let mut finer = from_picture;
+        let BloomLevels { image, from_image, levels } = levels;
+        let mut finer = from_image;
         for level in levels {
             draw(encoder, &self.halve, finer, &level.view, 0.0);
             finer = &level.group;

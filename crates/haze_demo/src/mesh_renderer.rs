@@ -129,12 +129,19 @@ impl MeshPipelines {
         })];
         let draws = |fragment, formats: &[_]| {
             let fragment = Some((fragment, formats));
-            ScenePipeline { groups: &drawn, vertex: "mesh_vertex", buffers: &vertices, fragment, depth: true }
-                .create(device, &module)
+            ScenePipeline {
+                groups: &drawn,
+                vertex: "mesh_vertex",
+                buffers: &vertices,
+                fragment,
+                depth: true,
+                blend: None,
+            }
+            .create(device, &module)
         };
         let lights = |fragment, formats: &[_]| {
             let fragment = Some((fragment, formats));
-            ScenePipeline { groups: &lit, vertex: "layer_vertex", buffers: &[], fragment, depth: false }
+            ScenePipeline { groups: &lit, vertex: "layer_vertex", buffers: &[], fragment, depth: false, blend: None }
                 .create(device, &module)
         };
         Self {

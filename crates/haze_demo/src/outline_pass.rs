@@ -71,6 +71,7 @@ impl OutlinePass {
             buffers: &[],
             fragment: Some(("outline_fragment", &[COLOR_FORMAT])),
             depth: false,
+            blend: None,
         };
         let pipeline = pipeline.create(device, &module);
         Self { device: device.clone(), queue: queue.clone(), layout, pipeline }

@@ -19,18 +19,20 @@ pub(crate) struct ScenePipeline<'a> {
     pub fragment: Option<(&'a str, &'a [wgpu::TextureFormat])>,
     /// Tests and writes the depth buffer.
     pub depth: bool,
+    /// Of all formats; `None` replaces.
+    pub blend: Option<wgpu::BlendState>,
 }
 
 impl ScenePipeline<'_> {
     pub fn create(self, device: &wgpu::Device, module: &wgpu::ShaderModule) -> wgpu::RenderPipeline {
-        let Self { groups, vertex, buffers, fragment, depth } = self;
+        let Self { groups, vertex, buffers, fragment, depth, blend } = self;
         let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some("demo scene"),
             bind_group_layouts: groups,
             immediate_size: 0,
         });
-        let targets: Vec<_> =
-            fragment.iter().flat_map(|(_, formats)| *formats).map(|&format| Some(format.into())).collect();
+        let target = |&format| Some(wgpu::ColorTargetState { blend, ..wgpu::ColorTargetState::from(format) });
+        let targets: Vec<_> = fragment.iter().flat_map(|(_, formats)| *formats).map(target).collect();
         device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: Some("demo scene"),
             layout: Some(&layout),

@@ -158,7 +158,8 @@ impl SceneRenderer {
                 let groups: Vec<wgpu::BindGroupLayout> = groups.iter().copied().cloned().collect();
                 let create = move || {
                     let groups: Vec<_> = groups.iter().map(Some).collect();
-                    ScenePipeline { groups: &groups, vertex, buffers: &[], fragment, depth }.create(&device, &module)
+                    ScenePipeline { groups: &groups, vertex, buffers: &[], fragment, depth, blend: None }
+                        .create(&device, &module)
                 };
                 LazyPipeline::new(Box::new(create))
             };

@@ -148,7 +148,7 @@ impl HotReload {
                 self.load_backdrop(session);
             }
         }
-        let mut has_pictures = false;
+        let mut has_images = false;
         let mut has_particle_files = false;
         let mut has_shaders = false;
         let mut has_backdrop = false;
@@ -160,7 +160,7 @@ impl HotReload {
             } else if self.backdrop_files.contains(&file) {
                 has_backdrop = true;
             } else if has_ending(&file, "png") {
-                has_pictures = true;
+                has_images = true;
                 mark_edits_stale(session);
             } else if has_ending(&file, "json") {
                 mark_edits_stale(session);
@@ -168,7 +168,7 @@ impl HotReload {
                 has_particle_files = true;
             }
         }
-        if has_pictures {
+        if has_images {
             self.load_images(session);
         }
         if has_particle_files {
