@@ -11,7 +11,7 @@ use haze_preset::{ImageSource, MaterialSources};
 
 use crate::gpu::{gpu, is_tiled_available};
 use crate::psnr::psnr;
-use crate::test_scene::{Change, TestScene, assert_agreement_and_effect};
+use crate::test_scene::{Change, TestScene, WAYS_TO_DRAW, assert_agreement_and_effect};
 
 const SIZE: UVec2 = UVec2::new(160, 90);
 
@@ -34,34 +34,19 @@ fn drawn(scene: &TestScene) -> Image<Vec4> {
 #[test]
 fn gpu_and_cpu_draw_the_same_fire() {
     let changes: &[(&str, Change)] = &[
-        ("raster", |_| {}),
-        ("forward", |s| s.settings.path = RenderPath::Forward),
-        ("tiled", |s| s.settings.path = RenderPath::Tiled),
-        ("six-way", |s| s.settings.lighting = Lighting::SixWay),
-        ("six-way, tiled", |s| (s.settings.lighting, s.settings.path) = (Lighting::SixWay, RenderPath::Tiled)),
-        ("weighted", |s| s.settings.accumulate.order = BlendOrder::Weighted),
-        ("weighted, tiled", |s| {
-            s.settings.accumulate.order = BlendOrder::Weighted;
-            s.settings.path = RenderPath::Tiled;
-        }),
         ("with shadow", |s| s.settings.shadow.strength = 0.8),
         ("with shadow by depth, tiled", |s| {
             s.settings.shadow.strength = 0.8;
             s.settings.shadow.by_depth = true;
             s.settings.path = RenderPath::Tiled;
         }),
-        ("lit per texel", |s| {
-            s.settings.accumulate.downscale = 3;
-            s.settings.accumulate.lighting_resolution = LightingResolution::Target;
-        }),
-        ("guided", |s| (s.settings.accumulate.downscale, s.settings.accumulate.upsample) = (3, Upsample::Guided)),
         ("spheres", |s| s.settings.technique = Technique::SphericalBillboard),
         ("volumetric", |s| s.settings.technique = Technique::VolumetricSoft),
         ("density", |s| s.settings.technique = Technique::Density),
         ("steps", |s| s.settings.ramp_filter = RampFilter::Nearest),
         ("exposed", |s| s.exposure = 0.4),
     ];
-    for (name, change) in changes {
+    for (name, change) in WAYS_TO_DRAW.iter().chain(changes) {
         let mut scene = burning();
         change(&mut scene);
         let needs_compute = scene.settings.path == RenderPath::Tiled || scene.settings.shadow.strength > 0.0;

@@ -10,7 +10,9 @@ use crate::gpu::{gpu, is_tiled_available};
 use crate::psnr::{MIN_PSNR, psnr};
 use crate::resource_counter;
 use crate::test_host::Host;
-use crate::test_scene::{BACKDROP, Change, DepthKind, TestScene, TestShadowMap, assert_agreement_and_effect};
+use crate::test_scene::{
+    BACKDROP, Change, DepthKind, TestScene, TestShadowMap, WAYS_TO_DRAW, assert_agreement_and_effect,
+};
 
 const SIZE: UVec2 = UVec2::new(160, 90);
 
@@ -46,25 +48,10 @@ fn drawn(scene: &TestScene) -> Image<Vec4> {
 #[test]
 fn gpu_and_cpu_draw_the_same_shadow() {
     let changes: &[(&str, Change)] = &[
-        ("raster", |_| {}),
-        ("forward", |s| s.settings.path = RenderPath::Forward),
-        ("tiled", |s| s.settings.path = RenderPath::Tiled),
-        ("six-way", |s| s.settings.lighting = Lighting::SixWay),
-        ("six-way, tiled", |s| (s.settings.lighting, s.settings.path) = (Lighting::SixWay, RenderPath::Tiled)),
-        ("weighted", |s| s.settings.accumulate.order = BlendOrder::Weighted),
-        ("weighted, tiled", |s| {
-            s.settings.accumulate.order = BlendOrder::Weighted;
-            s.settings.path = RenderPath::Tiled;
-        }),
         ("six-way, weighted", |s| {
             s.settings.accumulate.order = BlendOrder::Weighted;
             s.settings.lighting = Lighting::SixWay;
         }),
-        ("lit per texel", |s| {
-            s.settings.accumulate.downscale = 3;
-            s.settings.accumulate.lighting_resolution = LightingResolution::Target;
-        }),
-        ("guided", |s| (s.settings.accumulate.downscale, s.settings.accumulate.upsample) = (3, Upsample::Guided)),
         ("spheres", |s| s.settings.technique = Technique::SphericalBillboard),
         ("fine", |s| s.settings.shadow.resolution = 64),
         ("coarse", |s| s.settings.shadow.resolution = 4),
@@ -78,7 +65,7 @@ fn gpu_and_cpu_draw_the_same_shadow() {
             s.lights.extend((0..6).map(light));
         }),
     ];
-    for (name, change) in available(changes) {
+    for (name, change) in available(WAYS_TO_DRAW).chain(available(changes)) {
         let mut scene = shaded();
         change(&mut scene);
         assert_agreement_and_effect(name, scene, |s| s.settings.shadow.strength = 0.0, 40.0);
@@ -235,25 +222,10 @@ fn under_a_roof() -> TestScene {
 #[test]
 fn gpu_and_cpu_draw_the_same_shadow_of_the_scene() {
     let changes: &[(&str, Change)] = &[
-        ("raster", |_| {}),
-        ("forward", |s| s.settings.path = RenderPath::Forward),
         ("forward, spheres", |s| {
             s.settings.path = RenderPath::Forward;
             s.settings.technique = Technique::SphericalBillboard;
         }),
-        ("tiled", |s| s.settings.path = RenderPath::Tiled),
-        ("six-way", |s| s.settings.lighting = Lighting::SixWay),
-        ("six-way, tiled", |s| (s.settings.lighting, s.settings.path) = (Lighting::SixWay, RenderPath::Tiled)),
-        ("weighted", |s| s.settings.accumulate.order = BlendOrder::Weighted),
-        ("weighted, tiled", |s| {
-            s.settings.accumulate.order = BlendOrder::Weighted;
-            s.settings.path = RenderPath::Tiled;
-        }),
-        ("lit per texel", |s| {
-            s.settings.accumulate.downscale = 3;
-            s.settings.accumulate.lighting_resolution = LightingResolution::Target;
-        }),
-        ("guided", |s| (s.settings.accumulate.downscale, s.settings.accumulate.upsample) = (3, Upsample::Guided)),
         ("reversed", |s| {
             let map = &mut s.shadow_maps[0];
             map.reversed = true;
@@ -272,7 +244,7 @@ fn gpu_and_cpu_draw_the_same_shadow_of_the_scene() {
             s.lights.push(Light { position: vec3(0.3, 0.2, -6.0), intensity: 2.0, ..Light::default() });
         }),
     ];
-    for (name, change) in available(changes) {
+    for (name, change) in available(WAYS_TO_DRAW).chain(available(changes)) {
         let mut scene = under_a_roof();
         change(&mut scene);
         assert_agreement_and_effect(name, scene, |s| s.shadow_maps.clear(), 45.0);

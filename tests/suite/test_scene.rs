@@ -12,7 +12,7 @@ use haze_core::assets::image::Image;
 use haze_core::assets::noise::{NoiseVolume, pcg3d, unit};
 use haze_core::assets::ramp::Ramp;
 use haze_core::assets::sprite::{Sprite, SpriteLayout};
-use haze_core::settings::{DebugView, RenderPath, Settings};
+use haze_core::settings::*;
 
 use crate::gpu::gpu;
 use crate::psnr::{MIN_PSNR, psnr};
@@ -298,6 +298,25 @@ impl TestScene {
 
 /// A change of a scene.
 pub type Change = fn(&mut TestScene);
+
+/// Paths, lightings, orders and resolutions that draw the same smoke.
+pub const WAYS_TO_DRAW: &[(&str, Change)] = &[
+    ("raster", |_| {}),
+    ("forward", |s| s.settings.path = RenderPath::Forward),
+    ("tiled", |s| s.settings.path = RenderPath::Tiled),
+    ("six-way", |s| s.settings.lighting = Lighting::SixWay),
+    ("six-way, tiled", |s| (s.settings.lighting, s.settings.path) = (Lighting::SixWay, RenderPath::Tiled)),
+    ("weighted", |s| s.settings.accumulate.order = BlendOrder::Weighted),
+    ("weighted, tiled", |s| {
+        s.settings.accumulate.order = BlendOrder::Weighted;
+        s.settings.path = RenderPath::Tiled;
+    }),
+    ("lit per texel", |s| {
+        s.settings.accumulate.downscale = 3;
+        s.settings.accumulate.lighting_resolution = LightingResolution::Target;
+    }),
+    ("guided", |s| (s.settings.accumulate.downscale, s.settings.accumulate.upsample) = (3, Upsample::Guided)),
+];
 
 /// Both renderers draw the same, and something else after `turn_off`: `most` dB alike.
 pub fn assert_agreement_and_effect(name: &str, mut scene: TestScene, turn_off: Change, most: f32) {

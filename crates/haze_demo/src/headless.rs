@@ -120,12 +120,6 @@ impl Headless {
         format!("{} ({:?}, {}{software})", info.name, info.backend, driver.trim())
     }
 
-    /// True if the adapter can draw to a format. OpenGL does not guarantee that for every format.
-    pub fn can_draw_to(&self, format: wgpu::TextureFormat) -> bool {
-        let usages = self.adapter.get_texture_format_features(format).allowed_usages;
-        usages.contains(wgpu::TextureUsages::RENDER_ATTACHMENT)
-    }
-
     /// Checks for failures since the device was created.
     ///
     /// # Errors
