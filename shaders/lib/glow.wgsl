@@ -6,6 +6,9 @@
 #import "lib/lighting.wgsl"
 #import "lib/ramp.wgsl"
 
+// True if a texel covers several pixels: it may have smoke at a thin surface that is in front of all smoke.
+override COARSE: bool = true;
+
 // A light as its glow is drawn: within a circle of constant size around it.
 struct Glow {
     // Pixels of the view.
@@ -52,8 +55,7 @@ fn glow_of_light(light: Light) -> Glow {
 
 // Glow of a light in smoke at a pixel. `distance_squared`: from the light, in radii of the circle.
 fn glow_in_smoke(color: vec3f, light: Light, distance_squared: f32, amount: f32, pixel: vec2f) -> vec3f {
-    // A coarse target may have smoke at a thin surface that is in front of all smoke.
-    if system.scale > 1u && scene_view_depth(pixel) < system.smoke_near {
+    if COARSE && scene_view_depth(pixel) < system.smoke_near {
         return vec3f(0.0);
     }
     let to_light = light.position - shading_position(pixel);

@@ -233,15 +233,23 @@ fn deferred<'a>(
         depth_test,
         overdraw: false,
     };
-    let has_slopes = lights_target && upsample == Upsample::Guided && settings.scale > 1;
+    let is_coarse = settings.scale > 1;
+    let has_slopes = lights_target && upsample == Upsample::Guided && is_coarse;
     let glows_in_pixels = computes_texels && glows;
-    let pixel = LitPixelKey { glows: glows_in_pixels, upsample, coverage, is_additive, ramp_filter, exact_filtering };
+    let pixel = LitPixelKey {
+        glows: glows_in_pixels,
+        coarse: glows_in_pixels && is_coarse,
+        upsample,
+        coverage,
+        is_additive,
+        ramp_filter,
+        exact_filtering,
+    };
     let slope_cells = has_slopes && !exact_filtering;
     // One image for all debug views that show it.
     let same_pixels = !glows || debug_views.iter().all(|view| view.shows_glow() || !view.shows_lit_smoke());
     // At scale 1, a pixel is hardly more than its lit texel.
-    let computes_pixels =
-        inputs.computes_pixels && computes_texels && lights_target && settings.scale > 1 && same_pixels;
+    let computes_pixels = inputs.computes_pixels && computes_texels && lights_target && is_coarse && same_pixels;
     DeferredPlan {
         reads_linear,
         diffuse_bake: bakes.then_some(DiffuseBakeKey {
@@ -285,6 +293,7 @@ fn deferred<'a>(
         specular_scatter: glows.then_some(SpecularScatterKey {
             host,
             lit: lights_target,
+            coarse: is_coarse,
             upsample,
             ramp_filter,
             exact_filtering,

@@ -25,6 +25,8 @@ pub(crate) struct SpecularScatterKey {
     pub host: HostPass,
     /// True if the amount comes from the output of light_target.
     pub lit: bool,
+    /// True if a texel covers several pixels.
+    pub coarse: bool,
     pub upsample: Upsample,
     pub ramp_filter: RampFilter,
     pub exact_filtering: bool,
@@ -49,6 +51,7 @@ impl PipelineKey for SpecularScatterKey {
             targets: self.host.color_targets(ADDITIVE),
             constants: vec![
                 bool_constant("LIT", self.lit),
+                bool_constant("COARSE", self.coarse),
                 enum_constant!("UPSAMPLE", self.upsample),
                 enum_constant!("RAMP_FILTER", self.ramp_filter),
                 bool_constant("EXACT_FILTERING", self.exact_filtering),

@@ -38,6 +38,8 @@ pub(crate) fn lit_textures<'a>(
 pub(crate) struct LitPixelKey {
     /// True to add the glow of lights, which light_target has computed.
     pub glows: bool,
+    /// True if a texel covers several pixels, and the glow is added.
+    pub coarse: bool,
     pub upsample: Upsample,
     pub coverage: CoverageMode,
     pub is_additive: bool,
@@ -50,6 +52,7 @@ impl LitPixelKey {
     pub fn constants(self, of_pass: &[Constant]) -> Vec<Constant> {
         let shared = [
             bool_constant("GLOWS", self.glows),
+            bool_constant("COARSE", self.coarse),
             enum_constant!("UPSAMPLE", self.upsample),
             enum_constant!("COVERAGE_MODE", self.coverage),
             bool_constant("ADDITIVE", self.is_additive),
