@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use haze_core::error::AssetError;
+use haze_core::settings::{BlendMode, RenderPath};
 use haze_preset::{AssetFolders, ImageCache, ImageSource, MaterialSources, Preset, with_system_context};
 
 use super::role_check::role_warnings;
@@ -31,6 +32,12 @@ pub fn check_files(preset: &Preset, path: &Path, folders: &AssetFolders) -> (Vec
         };
         let told = |(field, warning)| format!("systems[{index}].material.{field}: {warning}");
         warnings.extend(found.into_iter().map(told));
+        if system.settings.blend_mode == BlendMode::Multiply && system.settings.path != RenderPath::Forward {
+            warnings.push(format!(
+                "systems[{index}].settings.blend_mode: multiply is drawn as alpha on the path {}; expected the path forward",
+                system.settings.path.name()
+            ));
+        }
         let near = preset.camera.near;
         let near_fade_end = system.settings.soft_fade.near_fade_end;
         if near_fade_end > 0.0 && near_fade_end <= near {
@@ -81,6 +88,7 @@ mod tests {
             system.material.columns = 3;
         });
         name(0, |system| system.material.diffuse_ramp = "down.png".into());
+        name(0, |system| system.settings.blend_mode = BlendMode::Multiply);
         name(1, |system| system.material.noise = "flat.png".into());
         name(1, |system| system.material.motif = "none".into());
         name(1, |system| system.material.age_ramp = "down.png".into());
@@ -104,6 +112,7 @@ mod tests {
         assert_eq!(errors.len(), 5, "{errors:?}");
         for (said, begins) in warnings.iter().zip([
             "systems[0].material.diffuse_ramp: down.png: painted from top to bottom",
+            "systems[0].settings.blend_mode: multiply is drawn as alpha on the path auto",
             "systems[1].material.age_ramp: down.png: painted from top to bottom",
             "systems[2].material.sprite: clear.png: alpha is 0 everywhere",
             "systems[2].material.coverage_ramp: down.png: painted from top to bottom",
@@ -111,6 +120,6 @@ mod tests {
         ]) {
             assert!(said.starts_with(begins), "{begins}: {warnings:?}");
         }
-        assert_eq!(warnings.len(), 5, "{warnings:?}");
+        assert_eq!(warnings.len(), 6, "{warnings:?}");
     }
 }
