@@ -38,6 +38,7 @@ pub struct Layout {
     /// Height of the debug view strip, likewise.
     pub strip_height: Option<PanelSize>,
     pub has_strip: Option<bool>,
+    pub has_docked_inspector: Option<bool>,
     /// Folder of the last export.
     pub export_folder: Option<PathBuf>,
     /// `dark`, `light` or `system`.
@@ -106,6 +107,7 @@ impl Layout {
             self.window = Some(context.content_rect().size().into());
         }
         self.has_strip = Some(session.view.has_strip);
+        self.has_docked_inspector = Some(session.inspect.is_docked);
         self.hints = Some(session.hints.left());
     }
 }

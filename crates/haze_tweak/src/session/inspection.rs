@@ -15,6 +15,8 @@ use crate::viewport_renderer::compared_side::ComparedSide;
 pub struct Inspection {
     /// The values of the pixel under the pointer are shown.
     pub is_on: bool,
+    /// True if the values are beside the image, not over it.
+    pub is_docked: bool,
     /// A drag paints on the smoke, and the values would hide it.
     pub is_painting: bool,
     /// Pointer position over the image, in fractions of its sides.

@@ -1,4 +1,4 @@
-//! Values of a pixel, in a corner of the viewport.
+//! Values of a pixel, in a corner of the viewport or docked beside it.
 
 use eframe::egui::{self, Color32, Rect, RichText, Sense, Stroke, Ui, Vec2};
 use glam::{Vec3, Vec4, Vec4Swizzles};
@@ -20,25 +20,77 @@ const LARGE: Vec2 = Vec2::new(480.0, 400.0);
 /// A narrower viewport shows the colors of lights without numbers, points. The second is for lights with shadow.
 const WIDE: [f32; 2] = [540.0, 720.0];
 
-/// Draws the values while the inspector is on, on the side away from the pointer.
-pub fn panel(ui: &Ui, viewport: Rect, session: &Session) {
-    let inspect = &session.inspect;
-    let compare = &session.compare;
-    let Some(position) = inspect.position().filter(|_| inspect.is_on && !inspect.is_painting) else { return };
-    let side = compare.side(position.x);
-    let is_made = side == ComparedSide::Second && compare.against == Some(CompareWith::Reference);
-    let values = inspect.pixel_values.as_ref().filter(|values| values.side == side && !is_made);
-    if values.is_none() && !is_made {
+/// Width of the docked inspector, points, and the most of a narrow window that it takes.
+const DOCK_WIDTH: f32 = 290.0;
+const DOCK_FRACTION: f32 = 0.22;
+
+/// Values of a pixel, as far as there are any.
+enum Readout<'a> {
+    Values(&'a PixelValues),
+    /// The pixel is of the CPU renderer's image.
+    Reference,
+}
+
+/// Returns what is known of the pixel at a position, as a fraction of the viewport.
+fn readout(session: &Session, position: Vec2) -> Option<Readout<'_>> {
+    let side = session.compare.side(position.x);
+    if side == ComparedSide::Second && session.compare.against == Some(CompareWith::Reference) {
+        return Some(Readout::Reference);
+    }
+    session.inspect.pixel_values.as_ref().filter(|values| values.side == side).map(Readout::Values)
+}
+
+/// Draws the values beside the image, if the inspector is docked there. Call it before the image, which takes the rest.
+pub fn docked_panel(ui: &mut Ui, session: &mut Session) {
+    if !session.inspect.is_on || !session.inspect.is_docked {
         return;
     }
-    cross(ui, viewport.min + position * viewport.size(), inspect.pinned.is_some());
+    // The image stays the largest part.
+    let width = DOCK_WIDTH.min(DOCK_FRACTION * ui.ctx().content_rect().width());
+    let panel = egui::Panel::left("docked inspector").default_size(width).size_range(140.0..=1.5 * width);
+    panel.show(ui, |ui| {
+        let is_undocked = ui.button("Undock").on_hover_text("Show the values over the image").clicked();
+        ui.separator();
+        // A popup would have half of a viewport.
+        let room = Vec2::new(2.0 * ui.available_width(), LARGE.y);
+        egui::ScrollArea::both().auto_shrink(false).show(ui, |ui| {
+            ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Extend);
+            match session.inspect.position().and_then(|position| readout(session, position)) {
+                Some(readout) => show(ui, &readout, session, room),
+                None => drop(ui.weak("Point at the image")),
+            }
+        });
+        if is_undocked {
+            session.inspect.is_docked = false;
+        }
+    });
+}
+
+fn show(ui: &mut Ui, readout: &Readout<'_>, session: &Session, room: Vec2) {
+    match readout {
+        Readout::Values(values) => numbers(ui, values, session, room),
+        Readout::Reference => drop(ui.weak("The CPU image cannot be inspected")),
+    }
+}
+
+/// Marks the pixel while the inspector is on, and draws its values on the side away from the pointer if they are not docked.
+pub fn panel(ui: &Ui, viewport: Rect, session: &mut Session) {
+    let inspect = &session.inspect;
+    let Some(position) = inspect.position().filter(|_| inspect.is_on && !inspect.is_painting) else { return };
+    let Some(readout) = readout(session, position) else { return };
+    let is_pinned = inspect.pinned.is_some();
+    cross(ui, viewport.min + position * viewport.size(), is_pinned);
+    if inspect.is_docked {
+        return;
+    }
     let (corner, pivot) = if position.x < 0.5 {
         (viewport.right_top() + Vec2::new(-MARGIN, MARGIN), egui::Align2::RIGHT_TOP)
     } else {
         (viewport.left_top() + Vec2::splat(MARGIN), egui::Align2::LEFT_TOP)
     };
-    let area = egui::Area::new(egui::Id::unique("inspector")).fixed_pos(corner).pivot(pivot).interactable(false);
+    let area = egui::Area::new(egui::Id::unique("inspector")).fixed_pos(corner).pivot(pivot).interactable(is_pinned);
     let size = viewport.size();
+    let mut is_docked = false;
     area.constrain_to(viewport).show(ui.ctx(), |ui| {
         egui::Frame::popup(ui.style()).show(ui, |ui| {
             ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Extend);
@@ -47,12 +99,14 @@ pub fn panel(ui: &Ui, viewport: Rect, session: &Session) {
                 ui.spacing_mut().item_spacing = Vec2::new(4.0, 1.0);
                 ui.spacing_mut().interact_size = Vec2::new(26.0, 14.0);
             }
-            match values {
-                Some(values) => numbers(ui, values, session, size),
-                None => drop(ui.weak("The CPU image cannot be inspected")),
+            show(ui, &readout, session, size);
+            // Values that follow the pointer cannot be clicked.
+            if is_pinned {
+                is_docked = ui.button("Dock").on_hover_text("Show the values beside the image").clicked();
             }
         });
     });
+    session.inspect.is_docked = is_docked;
 }
 
 fn is_small(viewport: Vec2) -> bool {

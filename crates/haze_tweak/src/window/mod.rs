@@ -83,6 +83,7 @@ impl Window {
         session.attach_window(renderer.egui());
         renderer.egui().add_glyph_rasterizer(panels::rows::copy_icon::rasterizer());
         session.view.has_strip = layout.has_strip.unwrap_or(session.view.has_strip);
+        session.inspect.is_docked = layout.has_docked_inspector.unwrap_or_default();
         match &layout.hints {
             Some(left) => session.hints.resume(left),
             None if persistence.is_some() && layout == Layout::default() => session.hints.begin(),
@@ -275,11 +276,12 @@ impl Window {
 
     /// Draws the image, and all that opens over it.
     fn image_and_popups(&mut self, ui: &mut Ui, is_touched: bool) {
+        inspector::docked_panel(ui, &mut self.session);
         egui::CentralPanel::no_frame().show(ui, |ui| {
             let rect = ui.max_rect();
             self.session.hints.record_rect(WindowPart::Image, rect);
             self.viewport.show(ui, &mut self.session, &self.renderer);
-            inspector::panel(ui, rect, &self.session);
+            inspector::panel(ui, rect, &mut self.session);
             panels::look_browser::panel(ui, &mut self.session, rect);
         });
         if let Some(probe_job) = &mut self.probe_job {

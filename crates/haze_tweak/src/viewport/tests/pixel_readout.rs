@@ -56,6 +56,19 @@ fn values_of_the_pixel_under_the_pointer_are_shown_and_a_click_pins_it() {
     harness.remove_cursor();
     harness.run_steps(3);
     assert!(shows(&harness, "Pinned") && shows(&harness, "Coverage"));
+    // Docked, the values cover nothing; the next pixel is shown there too.
+    let image = |harness: &Harness<'_, Window>| harness.get_by_label("viewport").rect();
+    let whole = image(&harness);
+    harness.get_by_label("Dock").click();
+    harness.run_steps(3);
+    let beside = image(&harness);
+    assert!(beside.left() > whole.left() + 100.0 && (beside.right() - whole.right()).abs() < 0.5, "{whole} {beside}");
+    wait_for(&mut harness, |harness| shows(harness, "Coverage"));
+    assert!(harness.get_by_label_contains("Coverage").rect().left() < beside.left());
+    look(&mut harness, "docked inspector");
+    harness.get_by_label("Undock").click();
+    harness.run_steps(3);
+    assert_eq!(image(&harness), whole);
     harness.key_press(Key::I);
     harness.run_steps(3);
     assert!(!shows(&harness, "Coverage"));

@@ -223,3 +223,60 @@ fn a_flipbook_with_normals_takes_at_most_3_actions() {
     let has = |name: &str| Path::new(&made).join(name).is_file();
     assert!(has("color.png") && has("normals.png") && has("flipbook.json"), "{made:?}");
 }
+
+#[test]
+fn steam_under_a_sun_takes_at_most_15_actions() {
+    let mut script = Script::open("column", Vec2::new(1000.0, 640.0));
+    script.click("Add system");
+    script.click("Steam");
+    script.click("Edit smoke");
+    script.click("Delete");
+    script.click("Light");
+    script.click("Add a sun");
+    script.click("Noon");
+    for lamp in ["Point 1", "Practical (Point 2)"] {
+        script.click(lamp);
+        script.click("Delete");
+    }
+    assert!(script.actions <= 15, "{}", script.actions);
+    let preset = script.preset();
+    let [steam] = &preset.systems[..] else { panic!("one system") };
+    assert_eq!((steam.name.as_str(), steam.settings.burns()), ("steam", false));
+    assert!(preset.lights.iter().all(|light| light.kind == LightKind::Directional) && sun_of(&preset.lights).is_some());
+    look(&mut script, "steam");
+}
+
+#[test]
+fn a_spell_takes_at_most_60_actions() {
+    let mut script = Script::open("column", Vec2::new(1000.0, 900.0));
+    // Two arms of wisps, and embers.
+    script.click("Add system");
+    script.click("Magic wisps");
+    script.click("Edit smoke");
+    script.click("Delete");
+    script.click("Edit magic wisps");
+    script.click("Duplicate");
+    script.click("Add system");
+    script.click("Embers");
+    // Dark, so that it lights the scene alone.
+    script.click("Light");
+    for light in ["Key (Point 1)", "Fill (Sun 1)", "Practical (Point 1)"] {
+        script.click(light);
+        script.click("Delete");
+    }
+    script.click("Look");
+    script.drag_slider("Bloom", 0.5);
+    assert!(script.actions <= 60, "{}", script.actions);
+    let preset = script.preset();
+    assert_eq!(preset.systems.len(), 3);
+    assert!(preset.systems.iter().all(|system| system.settings.burns()) && preset.lights.is_empty(), "{preset:?}");
+    assert!(preset.camera.bloom > 0.1, "{}", preset.camera.bloom);
+    look(&mut script, "spell");
+}
+
+/// Writes an image of the window to the folder that HAZE_LOOK names, for visual inspection.
+fn look(script: &mut Script, name: &str) {
+    if let Some(folder) = std::env::var_os("HAZE_LOOK") {
+        screenshot(&mut script.harness).save(Path::new(&folder).join(format!("{name}.png"))).unwrap();
+    }
+}
