@@ -10,6 +10,7 @@ mod assets;
 mod backdrop;
 mod bloom;
 mod budget;
+mod camera_passes;
 mod column_error;
 mod corpus;
 mod effects;

@@ -11,6 +11,7 @@ use haze_core::frame::{Light, Particle};
 use haze_core::settings::Settings;
 use haze_preset::Environment;
 
+use super::antialiasing::antialiased;
 use super::bloom::add_bloom;
 use super::outline::Outlines;
 use super::ray_caster::{self, SceneColor};
@@ -63,6 +64,12 @@ impl Shot {
             smoke_depths: frame.smoke_depths(),
         };
         let mut completed = outlines.completed();
+        if self.antialiasing() {
+            completed = antialiased(&completed);
+        }
+        if let Some(hot_air) = self.heat_haze(&lights) {
+            completed = hot_air.distorted(&completed, &depth);
+        }
         add_bloom(&mut completed, self.bloom());
         Ok(completed)
     }

@@ -3,14 +3,18 @@
 
 mod adapter_choice;
 mod address_space;
+pub mod antialiasing;
 pub mod bloom;
 pub mod bloom_pass;
 mod boxes;
+mod camera_passes;
 mod camera_rays;
 pub mod capture;
 mod cpu_render;
 pub mod headless;
+pub mod heat_haze;
 pub mod image_metrics;
+pub mod image_pass;
 mod layer_shots;
 mod layout;
 mod mesh_caster;

@@ -6,6 +6,8 @@ use haze_core::assets::material_assets::MaterialAssets;
 use haze_core::error::Error;
 
 use super::bloom_pass::{BLOOM_SHADER, BloomPass};
+use super::camera_passes::CameraPasses;
+
 use super::outline_pass::OutlinePass;
 use super::scene_pipeline::LINEAR_FORMAT;
 use super::scene_renderer::SceneRenderer;
@@ -20,6 +22,7 @@ pub struct OffscreenContext {
     pub(super) haze: Context,
     pub(super) scene: Arc<SceneRenderer>,
     pub(super) outlines: Arc<OutlinePass>,
+    pub(super) camera: Arc<CameraPasses>,
     /// Compiled on first use: few images have bloom.
     bloom: Arc<OnceLock<BloomPass>>,
     /// Materials that existing renderers have uploaded. Shared images are uploaded once.
@@ -45,6 +48,7 @@ impl OffscreenContext {
             outlines: Arc::new(OutlinePass::new(device, queue, &scene.scene_layout)),
             scene: Arc::new(scene),
             haze,
+            camera: Arc::new(CameraPasses::new(device, queue)),
             bloom: Arc::default(),
             materials: Arc::default(),
             attaches_depth: draws_linear || read_only_depth_is_supported(device),

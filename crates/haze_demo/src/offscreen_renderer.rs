@@ -14,6 +14,7 @@ use haze_core::settings::DebugView;
 use haze_preset::Environment;
 
 use super::bloom_pass::BloomLevels;
+use super::camera_passes::{CameraImages, CameraUniforms};
 use super::capture::Capture;
 pub use super::offscreen_context::OffscreenContext;
 use super::offscreen_context::UploadedMaterial;
@@ -85,6 +86,8 @@ struct SizedTargets {
     images: [Option<wgpu::Texture>; DebugView::ALL.len()],
     /// The final image before its outlines are completed.
     smoked: Option<OutlineInputs>,
+    /// Of the final image.
+    camera: CameraImages,
     /// Of the final image, if it has bloom.
     bloom: Option<BloomLevels>,
 }
@@ -247,6 +250,7 @@ impl OffscreenRenderer {
                 scene_inputs: None,
                 images: Default::default(),
                 smoked: None,
+                camera: CameraImages::default(),
                 bloom: None,
             }),
         };
@@ -365,7 +369,11 @@ impl OffscreenRenderer {
             let visible = (0..).zip(&self.materials).filter_map(|(key, _)| self.renderer.targets(key)?.smoke_depths);
             let depths = visible
                 .fold([SKY_VIEW_DEPTH, 0.0], |[nearest, farthest], [near, far]| [nearest.min(near), farthest.max(far)]);
-            outlines.record(encoder, &sized.targets, inputs, depths, &default_view(image));
+            let uniforms = CameraUniforms::new(shot, &lights);
+            self.context.camera.prepare(&mut sized.camera, &uniforms, size, &depth);
+            let completed = sized.camera.textures().next().unwrap_or(image);
+            outlines.record(encoder, &sized.targets, inputs, depths, &default_view(completed));
+            self.context.camera.record(encoder, &sized.camera, &uniforms, image);
         }
         let strength = shot.bloom();
         match image.filter(|_| strength > 0.0 && stages.contains(&DebugView::Final)) {
@@ -480,6 +488,7 @@ impl SizedTargets {
         };
         let smoked = self.smoked.iter().map(|outline| outline.smoked.texture());
         let bloom = self.bloom.iter().flat_map(BloomLevels::textures);
-        self.targets.textures().chain(self.images.iter().flatten()).chain(smoked).chain(bloom).map(bytes).sum()
+        let images = self.images.iter().flatten();
+        self.targets.textures().chain(images).chain(smoked).chain(self.camera.textures()).chain(bloom).map(bytes).sum()
     }
 }

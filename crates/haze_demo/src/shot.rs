@@ -11,6 +11,7 @@ use haze_core::frame::{EmitterPaths, EmitterSnapshot, Light, MAX_LIGHTS, Particl
 use haze_core::settings::{DebugView, Settings};
 use haze_preset::{AssetFolders, Camera, Preset, PresetSystem, system_list};
 
+use super::heat_haze::HeatHaze;
 use super::particle_scalar::ShownScalar;
 use super::scene::Scene;
 use super::shadow_views::{ShadowView, shadow_views};
@@ -136,6 +137,21 @@ impl Shot {
     /// Fraction of the light that the camera's lens spreads. Only the final image has bloom.
     pub(super) fn bloom(&self) -> f32 {
         if self.shows_scene() && self.shown_scalar.is_none() { self.preset.camera.bloom } else { 0.0 }
+    }
+
+    /// True if edges of the final image are smooth.
+    pub(super) fn antialiasing(&self) -> bool {
+        self.shows_scene() && self.shown_scalar.is_none() && self.preset.camera.antialiasing
+    }
+
+    /// Hot air in the final image. `lights`: as from [`lights`](Self::lights).
+    pub(super) fn heat_haze(&self, lights: &[Light]) -> Option<HeatHaze> {
+        if !self.shows_scene() || self.shown_scalar.is_some() {
+            return None;
+        }
+        let camera = &self.preset.camera;
+        let fires = lights.get(self.preset.lights.len()..).unwrap_or_default();
+        HeatHaze::new(&camera.view(self.size), fires, camera.heat_haze, self.preset.time)
     }
 
     /// True if the scene is visible. Debug views other than the final image are shown on black.

@@ -17,6 +17,8 @@ pub fn before_two_skies(shot: &Shot) -> [Shot; 2] {
         shot.backdrop = Backdrop::default();
         // It would carry light from pixel to pixel, and the sky's too.
         shot.preset.camera.bloom = 0.0;
+        shot.preset.camera.antialiasing = false;
+        shot.preset.camera.heat_haze = 0.0;
         let environment = &mut shot.preset.environment;
         environment.scene = SceneName::Empty;
         environment.zenith = Vec3::splat(light);

@@ -31,6 +31,13 @@ settings! {
         /// Fraction of the light that the lens spreads around bright areas: fire and sparks glow into the air. 0.05 is a clean
         /// lens, 0.3 a dreamy one. Images of smoke alone have none: it belongs to the engine that shows them.
         bloom: f32 = 0.0, number(0.0..=1.0, "");
+        /// Smooths edges of what is thin and far brighter than what is behind it, such as sparks. Images of smoke alone are not
+        /// smoothed.
+        antialiasing: bool = false, flag;
+        /// Bends light in the hot air above flames, so that the scene behind it shimmers. 0.3 is a campfire on a warm night, 1 a
+        /// furnace. Fires that cast no light have no hot air, and images of smoke alone show none: it belongs to the engine that
+        /// shows them.
+        heat_haze: f32 = 0.0, number(0.0..=1.0, "");
     }
 }
 

@@ -8,7 +8,7 @@ use glam::UVec2;
 
 use haze_core::frame::{Light, LightKind};
 use haze_core::settings::{field_values, is_field_named};
-use haze_preset::{Environment, Preset, SceneName};
+use haze_preset::{Environment, Preset, PresetSystem, SceneName};
 use rule::{NoEffectRule, find_reason, rule};
 use system_rules::SYSTEM_RULES;
 
@@ -86,6 +86,10 @@ pub fn no_effect_reason(preset: &Preset, path: &str, size: UVec2) -> Option<&'st
         }
         return find_reason(LIGHT_RULES, preset.lights.get(index)?, field, size);
     }
+    if path == "camera.heat_haze" {
+        let casts_light = |system: &PresetSystem| system.settings.burns() && system.settings.fire.light > 0.0;
+        return (!preset.systems.iter().any(casts_light)).then_some("only above fires that cast light");
+    }
     find_reason(ENVIRONMENT_RULES, &preset.environment, path.strip_prefix("environment.")?, size)
 }
 
@@ -118,7 +122,6 @@ pub(super) fn effect_conditions(path: &str) -> impl Iterator<Item = &'static str
 mod tests {
     use super::*;
     use haze_core::settings::ScaleMode;
-    use haze_preset::PresetSystem;
 
     #[test]
     fn every_row_names_existing_fields() {
@@ -143,6 +146,7 @@ mod tests {
         assert_eq!(reason("systems[0].settings.boost"), None);
         assert_eq!(reason("systems[1].settings.exponential.density"), None);
         assert_eq!(reason("camera.fov"), None);
+        assert_eq!(reason("camera.heat_haze"), Some("only above fires that cast light"));
         let mut reasons: Vec<_> = SYSTEM_RULES.iter().map(|rule| rule.reason).collect();
         reasons.sort_unstable();
         assert!(reasons.windows(2).all(|pair| pair[0] != pair[1]));

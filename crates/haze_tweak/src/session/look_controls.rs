@@ -48,6 +48,7 @@ pub const LOOK_SECTIONS: &[LookSection] = &[
             control("soot", ControlTarget::System("settings.fire.crust", None)),
             control("light of the fire", ControlTarget::System("settings.fire.light", Some((0.0, 4.0)))),
             control("flicker", ControlTarget::System("settings.fire.flicker", None)),
+            control("shimmer", ControlTarget::Camera("heat_haze", None)),
         ],
     },
     LookSection {

@@ -60,7 +60,7 @@ pub struct SearchResult {
 }
 
 /// Words that no setting has, or few, and words of the settings that come nearest.
-const SYNONYMS: [(&str, &[&str]); 27] = [
+const SYNONYMS: [(&str, &[&str]); 29] = [
     ("additive", &["blend"]),
     ("alpha", &["opacity", "thickness"]),
     ("animation", &["frame", "flipbook"]),
@@ -70,6 +70,7 @@ const SYNONYMS: [(&str, &[&str]); 27] = [
     ("count", &["rate"]),
     ("density", &["thickness"]),
     ("detail", &["grain"]),
+    ("distortion", &["heat"]),
     ("fog", &["thickness", "scatter"]),
     ("gravity", &["buoyancy", "rise"]),
     ("hue", &["color", "tonemap"]),
@@ -80,6 +81,7 @@ const SYNONYMS: [(&str, &[&str]); 27] = [
     ("quality", &["scale"]),
     ("resolution", &["scale"]),
     ("rotation", &["spin"]),
+    ("shimmer", &["heat"]),
     ("size", &["radius"]),
     ("speed", &["velocity", "wind"]),
     ("sun", &["kind"]),
@@ -263,6 +265,8 @@ mod tests {
             ("detail", "grain.tiles"),
             ("color over life", "sprite.age_color"),
             ("bloom", "camera.bloom"),
+            ("shimmer", "camera.heat_haze"),
+            ("distortion", "camera.heat_haze"),
             ("tone", "camera.tonemap"),
             ("hue", "camera.tonemap"),
             ("vortex", "ring_speed"),
