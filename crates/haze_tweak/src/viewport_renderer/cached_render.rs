@@ -80,6 +80,14 @@ impl CachedRender {
         last.is_none_or(|last| (last.size, last.debug_view) != (shot.size, shot.debug_view))
     }
 
+    /// Draws one view of a shot, also if others of it were drawn before. Returns true if the textures were replaced.
+    pub fn record_view(&mut self, target: &mut Target<'_>, shot: &Shot, view: DebugView) -> bool {
+        let last = self.shot.replace(shot.clone());
+        let done = self.offscreen.record(target.encoder, shot, &[view]);
+        self.error = done.err().map(|error| error.to_string());
+        last.is_none_or(|last| last.size != shot.size)
+    }
+
     /// Call if the commands that were recorded last were never submitted.
     pub fn forget(&mut self) {
         self.shot = None;

@@ -11,6 +11,7 @@ pub mod motion;
 pub mod paint_callback;
 pub mod psnr_job;
 pub mod smoke_times;
+pub mod stage_queue;
 pub mod viewport_frame;
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -28,6 +29,7 @@ use cached_render::submit_and_wait;
 use compared_side::ComparedSide;
 use device_health::DeviceHealth;
 use smoke_times::TimeSource;
+use stage_queue::StageQueue;
 use viewport_frame::RendererState;
 pub use viewport_frame::{RenderStats, TargetTexels, ViewportFrame};
 
@@ -51,7 +53,22 @@ impl ViewportRenderer {
     /// If there is no device, or it lacks what the demo renderer needs.
     pub fn new(window: &eframe::CreationContext<'_>) -> Result<Self, Error> {
         let render = render_state(window)?;
-        Self::with_context(window, OffscreenContext::new(&render.adapter, &render.device, &render.queue))
+        let renderer =
+            Self::with_context(window, OffscreenContext::new(&render.adapter, &render.device, &render.queue))?;
+        if renderer.is_software() {
+            renderer.draw_stages_one_by_one();
+        }
+        Ok(renderer)
+    }
+
+    /// Draws one stage of the strip in a frame, and none while the user holds something.
+    pub fn draw_stages_one_by_one(&self) {
+        self.lock().stages = Some(StageQueue::default());
+    }
+
+    /// Draws all stages of the strip in one frame.
+    pub fn draw_stages_at_once(&self) {
+        self.lock().stages = None;
     }
 
     /// Like [`new`](Self::new), with pipelines that other renderers of the window's device share.
@@ -99,14 +116,18 @@ impl ViewportRenderer {
         &self.health
     }
 
-    /// Call at the beginning of a frame. While something moves, the image is drawn at an adaptive resolution.
-    pub fn begin_frame(&self, is_moving: bool) {
+    /// Call at the beginning of a frame. `is_touched`: the user holds something; `is_animated`: time passes. While one is so,
+    /// the image is drawn at an adaptive resolution.
+    pub fn begin_frame(&self, is_touched: bool, is_animated: bool) {
         let mut state = self.lock();
         // egui drops recorded commands if there is no surface to draw to.
         if std::mem::take(&mut state.has_unpainted_commands) {
             state.forget();
         }
-        state.motion.begin_frame(is_moving);
+        state.motion.begin_frame(is_touched || is_animated);
+        if let Some(stages) = &mut state.stages {
+            stages.begin_frame(is_touched);
+        }
     }
 
     /// Simulates a long frame.

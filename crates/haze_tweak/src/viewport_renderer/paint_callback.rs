@@ -7,6 +7,7 @@ use haze_demo::shot::Shot;
 
 use super::ViewportRenderer;
 use super::cached_render::Target;
+use super::stage_queue::StageQueue;
 use super::viewport_frame::ViewportFrame;
 
 impl ViewportRenderer {
@@ -58,7 +59,10 @@ impl CallbackTrait for Callback {
             Content::Viewport(frame) => state.record_viewport(&mut target, frame),
             Content::DebugView(shot) => state.record_debug_view(&mut target, shot),
         }
-        if state.motion.wants_next() {
+        // A strip that is hidden takes no stages.
+        let is_stage = matches!(self.content, Content::DebugView(_));
+        let wants_stage = is_stage && state.stages.as_ref().is_some_and(StageQueue::wants_frame);
+        if state.motion.wants_next() || wants_stage {
             self.renderer.egui().request_repaint();
         }
         // Overlays use the texels of the previous image, so another frame must follow if they have changed.

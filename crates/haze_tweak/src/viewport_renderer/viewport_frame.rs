@@ -17,6 +17,7 @@ use super::compared_side::ComparedSide;
 use super::comparison_image::{ComparisonImage, UploadedImage};
 use super::motion::MotionTimer;
 use super::smoke_times::{SmokeTimes, TimeSource};
+use super::stage_queue::StageQueue;
 use crate::platform::clock::{self, Duration, Instant};
 
 /// Content of the viewport.
@@ -79,6 +80,8 @@ pub struct RendererState {
     /// All debug views, small.
     pub strip: CachedRender,
     strip_drawn: Option<Instant>,
+    /// Set where stages of the strip are drawn one by one.
+    pub stages: Option<StageQueue>,
     pub motion: MotionTimer,
     /// Texels of every system of the image.
     pub texels: Vec<Option<TargetTexels>>,
@@ -122,6 +125,7 @@ impl RendererState {
             pair: None,
             strip,
             strip_drawn: None,
+            stages: None,
             motion: MotionTimer::default(),
             texels: Vec::new(),
             has_unpainted_commands: false,
@@ -367,15 +371,31 @@ impl RendererState {
 
     pub fn record_debug_view(&mut self, target: &mut Target<'_>, shot: &Shot) {
         let view = shot.debug_view;
-        // The first view that is requested draws all.
         let all = Shot { debug_view: DebugView::Final, ..shot.clone() };
-        let may_wait =
-            self.motion.is_moving() && self.strip_drawn.is_some_and(|drawn| drawn.elapsed() < MIN_STRIP_INTERVAL);
-        if !may_wait && !self.strip.shows(&all) {
-            self.strip_drawn = Some(clock::now());
-            if self.strip.record(target, &all, DebugView::ALL) {
-                self.strip.tonemap_bindings = Default::default();
+        let is_moving = self.motion.is_moving();
+        let may_wait = is_moving && self.strip_drawn.is_some_and(|drawn| drawn.elapsed() < MIN_STRIP_INTERVAL);
+        let is_new = match &mut self.stages {
+            Some(stages) => {
+                // While something moves, a round of all stages is finished before the next.
+                if !self.strip.shows(&all) && (stages.is_empty() || !is_moving) {
+                    stages.restart();
+                }
+                let is_drawn = !may_wait && stages.take(view);
+                if is_drawn {
+                    self.strip_drawn = Some(clock::now());
+                }
+                is_drawn && self.strip.record_view(target, &all, view)
             }
+            None => {
+                if !may_wait && !self.strip.shows(&all) {
+                    self.strip_drawn = Some(clock::now());
+                }
+                // The first view that is requested draws all.
+                !may_wait && self.strip.record(target, &all, DebugView::ALL)
+            }
+        };
+        if is_new {
+            self.strip.tonemap_bindings = Default::default();
         }
         let Some(image) = self.strip.offscreen.image(view) else { return };
         let tonemap_bindings = self.strip.tonemap_bindings[view as usize]

@@ -64,6 +64,9 @@ pub struct Window {
 const LINK_USE: &str =
     if IS_PAGE { "" } else { ". Open it with `haze 'LINK'`, or append it to the address of a haze page." };
 
+/// Longest click where the CPU draws, seconds.
+const MAX_CLICK_SECONDS: f64 = 3.0;
+
 /// State that a window starts with.
 pub struct Start {
     pub session: Session,
@@ -82,6 +85,13 @@ impl Window {
         let Start { mut session, shaders, persistence, layout, has_dialogs } = start;
         session.attach_window(renderer.egui());
         renderer.egui().add_glyph_rasterizer(panels::rows::copy_icon::rasterizer());
+        if renderer.is_software() {
+            // A frame can take longer than the 0.8 s after which egui takes a press for no click.
+            renderer.egui().options_mut(|options| options.input_options.max_click_duration = MAX_CLICK_SECONDS);
+        }
+        if session.screenshot.is_some() {
+            renderer.draw_stages_at_once();
+        }
         session.view.has_strip = layout.has_strip.unwrap_or(session.view.has_strip);
         session.inspect.is_docked = layout.has_docked_inspector.unwrap_or_default();
         match &layout.hints {
@@ -371,7 +381,7 @@ impl eframe::App for Window {
         self.hot_reload.advance(&mut self.session, &self.renderer);
         let is_touched = ui.input(|input| input.pointer.any_down() || input.smooth_scroll_delta() != egui::Vec2::ZERO);
         let is_turning = self.session.view.lights.turn.is_some();
-        self.renderer.begin_frame(is_touched || is_turning || self.session.playback.is_playing);
+        self.renderer.begin_frame(is_touched, is_turning || self.session.playback.is_playing);
         self.file_actions.advance(&mut self.session, ui.ctx());
         self.session.playback.advance(f64::from(ui.input(|input| input.stable_dt)));
         panels::narrow::set_spacing(ui);

@@ -2,9 +2,10 @@
 
 use std::time::Instant;
 
-use eframe::egui::{Pos2, Rect, Role, Theme, Vec2, vec2};
+use eframe::egui::{Pos2, Rect, Role, Theme, Vec2, pos2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
+use haze_export::debug_view_sheet::DEBUG_VIEWS;
 use image::RgbaImage;
 
 use crate::window::Window;
@@ -33,7 +34,7 @@ fn worked() -> f64 {
 /// Drags a slider back and forth. Returns the frames per second after ten frames of warm-up, and the largest divisor of
 /// the resolution.
 fn drag(harness: &mut Harness<'_, Window>, frames: usize) -> (f64, u32) {
-    let rect = slider(harness, "thickness");
+    let rect = slider(harness, "Thickness");
     let at = |frame: usize| Pos2::new(rect.left() + 8.0 + (frame * 7 % 90) as f32, rect.center().y);
     harness.drag_at(at(0));
     let mut start = Instant::now();
@@ -66,6 +67,30 @@ fn a_slider_is_dragged_at_15_frames_a_second() {
         assert!(rate >= 15.0 || size.x > 640.0, "{rate}");
         assert_eq!(harness.state().renderer().divisor(), 1);
     }
+}
+
+#[test]
+fn stages_that_are_drawn_one_by_one_end_as_those_drawn_at_once() {
+    let mut harness = window("column", Vec2::new(700.0, 480.0), Theme::Dark);
+    let at_once = screenshot(&mut harness);
+    harness.state().renderer().draw_stages_one_by_one();
+    harness.state_mut().session_mut().playback.time += 1.0;
+    for _ in 0..DEBUG_VIEWS.len() {
+        screenshot(&mut harness);
+    }
+    harness.state_mut().session_mut().playback.time -= 1.0;
+    // The first stage alone is of this time.
+    let strip = Rect::from_min_max(harness.get_by_label("Reduced depth").rect().min, pos2(700.0, 480.0));
+    let count = |a: &RgbaImage, b: &RgbaImage| {
+        let pixels = (strip.top() as u32..strip.bottom() as u32).flat_map(|y| (0..700).map(move |x| (x, y)));
+        pixels.filter(|&(x, y)| a.get_pixel(x, y) != b.get_pixel(x, y)).count()
+    };
+    let one = screenshot(&mut harness);
+    assert!(count(&one, &at_once) > 100);
+    for _ in 0..DEBUG_VIEWS.len() {
+        screenshot(&mut harness);
+    }
+    assert_eq!(count(&screenshot(&mut harness), &at_once), 0);
 }
 
 #[test]
