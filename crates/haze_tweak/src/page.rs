@@ -9,6 +9,7 @@ use super::document::Document;
 use super::files::hot_reload::ShaderFolder;
 use super::files::persistence::{Layout, Persistence};
 use super::files::shared_look;
+use super::files::thumbnail_cache::ThumbnailCache;
 use super::platform::web::{page, storage};
 use super::session::Session;
 use super::window::Start;
@@ -16,6 +17,9 @@ use super::window::page_window;
 
 /// Folder of the files that the page keeps for itself.
 const STATE: &str = "state";
+
+/// Folder of the thumbnails of presets.
+const THUMBNAILS: &str = "thumbnails";
 
 /// Folder of the ramps that came with a link.
 const LINK: &str = "link";
@@ -47,12 +51,21 @@ async fn open() -> Result<(), String> {
         session.messages.error("layout", error);
     }
     let mut persistence = Persistence::new(STATE.into(), &mut session);
+    let has_start_view = fragment.is_empty() && persistence.crashed_work.is_empty();
+    session.playback.is_playing = has_start_view;
     // A reload is no crash: the work goes on. Over a link, also a broken one, the user is asked.
     if fragment.is_empty() {
         persistence.answer(true, &mut session);
     }
-    let start =
-        Start { session, shaders: ShaderFolder::None, persistence: Some(persistence), layout, has_dialogs: true };
+    let start = Start {
+        session,
+        shaders: ShaderFolder::None,
+        persistence: Some(persistence),
+        layout,
+        has_dialogs: true,
+        cache: ThumbnailCache { folder: Some(THUMBNAILS.into()) },
+        has_start_view,
+    };
     page_window::open(start).await
 }
 

@@ -88,7 +88,12 @@ fn a_device_lost_twice_ends_the_program_and_keeps_unsaved_work() {
     let display = Display::start();
     let folder = folder();
     let command = |arguments: &[&str]| {
-        haze(folder.path(), &display.name, &[("HAZE_TEST_LOSE_DEVICE", FRAMES)], &[&["tweak"], arguments].concat())
+        haze(
+            folder.path(),
+            &display.name,
+            &[("HAZE_TEST_LOSE_DEVICE", FRAMES)],
+            &[&["tweak", "column"], arguments].concat(),
+        )
     };
     let text = line(command(&BRIGHT), 1);
     assert!(text.contains("lost twice within 10 seconds") && text.contains("kept for the next start"), "{text}");
@@ -165,7 +170,7 @@ fn unsaved_work_of_a_killed_window_is_offered_by_the_next_one() {
     let folder = folder();
     let first = folder.path().join("state/recovery-1.json");
     let second = folder.path().join("state/recovery-2.json");
-    let start = || haze(folder.path(), &display.name, &[], &["tweak", "--size", "700x420"]).spawn().unwrap();
+    let start = || haze(folder.path(), &display.name, &[], &["tweak", "column", "--size", "700x420"]).spawn().unwrap();
     let mut client = display.connect();
     let mut child = start();
     let window = client.window();
@@ -230,7 +235,7 @@ fn a_window_of_any_size_runs_idles_and_closes() {
     let _lock = window_lock();
     let display = Display::start();
     let folder = folder();
-    let mut child = haze(folder.path(), &display.name, &[], &["tweak", "--size", "700x420"]).spawn().unwrap();
+    let mut child = haze(folder.path(), &display.name, &[], &["tweak", "column", "--size", "700x420"]).spawn().unwrap();
     let mut client = display.connect();
     let window = client.window();
     wait_for_rest(&child, IDLE);

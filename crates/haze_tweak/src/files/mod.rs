@@ -8,6 +8,7 @@ pub mod hot_reload;
 pub mod persistence;
 pub mod preset_thumbnails;
 pub mod shared_look;
+pub mod thumbnail_cache;
 pub mod value_spread;
 pub mod window_screenshot;
 

@@ -11,7 +11,7 @@ use crate::document::Document;
 use crate::document::recovery::{CrashedWork, RECOVERY_WRITE_INTERVAL, Recovery, find_crashed_work};
 use crate::platform::asset_loading::LoadedAssets;
 use crate::platform::clock::{self, Duration, Instant};
-use crate::platform::json_store;
+use crate::platform::{file_io, json_store};
 use crate::session::Session;
 
 /// Writes the layout and the recovery files.
@@ -45,6 +45,8 @@ pub struct Layout {
     pub theme: Option<String>,
     /// Names of the hints that are still to be shown.
     pub hints: Option<Vec<String>>,
+    /// Files that were open, the last one first.
+    pub recent: Vec<PathBuf>,
 }
 
 /// Size of a panel that the user has chosen, and the size of the window along the panel, in points.
@@ -109,6 +111,25 @@ impl Layout {
         self.has_strip = Some(session.view.has_strip);
         self.has_docked_inspector = Some(session.inspect.is_docked);
         self.hints = Some(session.hints.left());
+        self.record_open_file(session);
+    }
+}
+
+/// Number of files that are remembered.
+const MAX_RECENT: usize = 12;
+
+impl Layout {
+    /// Puts the open file first in the list.
+    fn record_open_file(&mut self, session: &Session) {
+        if session.document.is_built_in() {
+            return;
+        }
+        let path = file_io::absolute(session.document.path());
+        if self.recent.first() != Some(&path) {
+            self.recent.retain(|other| *other != path);
+            self.recent.insert(0, path);
+            self.recent.truncate(MAX_RECENT);
+        }
     }
 }
 
@@ -188,7 +209,6 @@ mod tests {
     use egui_kittest::kittest::Queryable as _;
 
     use super::*;
-    use crate::files::hot_reload::ShaderFolder;
     use crate::window::Start;
     use crate::window::testing;
 
@@ -197,8 +217,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let mut session = Session::open("column".as_ref(), None).unwrap();
         let persistence = Some(Persistence::new(folder.path().into(), &mut session));
-        let start =
-            Start { session, shaders: ShaderFolder::None, persistence, layout: Layout::default(), has_dialogs: false };
+        let start = Start { persistence, ..testing::start_of(session) };
         let mut harness = testing::open(start, egui::Vec2::new(1000.0, 640.0), egui::Theme::Dark);
         type Bench = egui_kittest::Harness<'static, crate::window::Window>;
         let until = |harness: &mut Bench, is_so: fn(&Layout) -> bool| {
@@ -210,12 +229,12 @@ mod tests {
             }
             harness.state().persistence.as_ref().unwrap().written.clone().unwrap().1
         };
-        until(&mut harness, |layout| layout.hints.as_ref().is_some_and(|left| left.len() == 5));
+        until(&mut harness, |layout| layout.hints.as_ref().is_some_and(|left| left.len() == 9));
         harness.get_by_label("Got it").click();
         harness.run_steps(3);
         harness.state_mut().session.view.has_strip = false;
         let first = until(&mut harness, |layout| {
-            layout.has_strip == Some(false) && layout.hints.as_ref().is_some_and(|left| left.len() == 4)
+            layout.has_strip == Some(false) && layout.hints.as_ref().is_some_and(|left| left.len() == 8)
         });
         harness.ctx.set_theme(egui::Theme::Light);
         let second = until(&mut harness, |layout| layout.theme.as_deref() == Some("light"));

@@ -76,12 +76,3 @@ pub fn open(fragment: &str, folder: &Path) -> Result<Session, Error> {
     file_io::write(&path, preset.to_json("").as_bytes())?;
     Session::open(&path, None)
 }
-
-/// Returns the name of a folder that only this link has.
-pub fn folder_name(fragment: &str) -> String {
-    // FNV-1a.
-    let hash = fragment
-        .bytes()
-        .fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3));
-    format!("{hash:016x}")
-}

@@ -15,19 +15,32 @@ const AWAY: f32 = 10.0;
 /// Draws the hint, away from the middle of the image. `is_pressing`: a pointer button or the wheel is in use.
 /// `is_dragging_light`: a light is being dragged.
 pub fn panel(ui: &Ui, session: &mut Session, is_pressing: bool, is_dragging_light: bool) {
+    let is_playing = session.playback.is_playing;
     let is_look_visible = session.view.tab == Tab::Look;
+    let is_ramp_visible = session.view.tab == Tab::Ramps;
     let is_searching = session.search.is_open;
     let is_key_list_open = session.view.help;
     session.hints.follow(
         &session.document.preset,
-        &UserActivity { is_pressing, is_dragging_light, is_look_visible, is_searching, is_key_list_open },
+        &UserActivity {
+            is_pressing,
+            is_dragging_light,
+            is_playing,
+            is_look_visible,
+            is_ramp_visible,
+            is_searching,
+            is_key_list_open,
+        },
     );
     let Some((hint, at)) = session.hints.shown().filter(|(_, at)| at.is_positive()) else { return };
     let Some((_, _, text)) = HINTS.into_iter().find(|(of, ..)| *of == hint) else { return };
     let (corner, pivot, way) = match hint.window_part() {
         WindowPart::Image => (at.left_bottom() + vec2(AWAY, -AWAY), Align2::LEFT_BOTTOM, Vec2::UP),
+        WindowPart::Play => (at.left_top() + vec2(0.0, -AWAY), Align2::LEFT_BOTTOM, Vec2::DOWN),
         WindowPart::Settings => (at.left_top() + vec2(-AWAY, 64.0), Align2::RIGHT_TOP, Vec2::RIGHT),
-        WindowPart::Find | WindowPart::Keys => (at.right_bottom() + vec2(0.0, AWAY), Align2::RIGHT_TOP, Vec2::UP),
+        WindowPart::RampsTab | WindowPart::AddSystem | WindowPart::Find | WindowPart::Keys => {
+            (at.right_bottom() + vec2(0.0, AWAY), Align2::RIGHT_TOP, Vec2::UP)
+        }
     };
     let area = egui::Area::new(egui::Id::unique("hint")).fixed_pos(corner).pivot(pivot);
     let mut answer = None;
@@ -58,6 +71,7 @@ pub fn panel(ui: &Ui, session: &mut Session, is_pressing: bool, is_dragging_ligh
 /// Returns the text of a hint, with the key for its action.
 fn with_key(ui: &Ui, hint: Hint, text: &str) -> String {
     let action = match hint {
+        Hint::Play => Action::Play,
         Hint::Find => Action::Find,
         Hint::Keys => Action::Help,
         _ => return text.into(),
@@ -73,7 +87,8 @@ fn tip(card: Rect, at: Rect, way: Vec2) -> Pos2 {
         return egui::pos2(card.right() + AWAY - 1.0, card.center().y);
     }
     let x = at.center().x.clamp(card.left() + 2.0 * AWAY, card.right() - 2.0 * AWAY);
-    egui::pos2(x, card.top() - AWAY + 1.0)
+    let y = if way == Vec2::DOWN { card.bottom() + AWAY - 1.0 } else { card.top() - AWAY + 1.0 };
+    egui::pos2(x, y)
 }
 
 fn arrow(ui: &Ui, layer: egui::LayerId, tip: Pos2, way: Vec2) {
@@ -91,7 +106,6 @@ mod tests {
     use egui_kittest::kittest::Queryable as _;
 
     use super::*;
-    use crate::files::hot_reload::ShaderFolder;
     use crate::files::persistence::{Layout, Persistence};
     use crate::window::testing;
     use crate::window::{Start, Window};
@@ -101,7 +115,7 @@ mod tests {
         let mut session = Session::open("column".as_ref(), None).unwrap();
         let persistence = Some(Persistence::new(folder.into(), &mut session));
         let (layout, _) = Layout::read(folder);
-        let start = Start { session, shaders: ShaderFolder::None, persistence, layout, has_dialogs: false };
+        let start = Start { persistence, layout, ..testing::start_of(session) };
         testing::open(start, size, theme)
     }
 
@@ -116,13 +130,17 @@ mod tests {
     fn each_hint_ends_when_its_action_is_done() {
         let folder = tempfile::tempdir().unwrap();
         let mut harness = start(folder.path(), vec2(1000.0, 640.0), Theme::Dark);
+        assert_eq!(shown(&harness), Some(Hint::Play));
+        harness.key_press(Key::Space);
+        harness.run_steps(2);
         assert_eq!(shown(&harness), Some(Hint::Orbit));
+        harness.key_press(Key::Space);
         // Later hints end too if their actions are done.
         harness.key_press_modifiers(Modifiers::COMMAND, Key::P);
         harness.run_steps(2);
         harness.key_press(Key::Escape);
         harness.run_steps(2);
-        assert_eq!(harness.state().session.hints.left(), ["orbit", "light", "look", "keys"]);
+        assert_eq!(harness.state().session.hints.left(), ["orbit", "light", "lamp", "look", "ramp", "system", "keys"]);
         let from = harness.get_by_label("viewport").rect().center();
         harness.drag_at(from);
         harness.step();
@@ -134,8 +152,20 @@ mod tests {
         // By keyboard alone.
         harness.key_press(Key::Escape);
         harness.run_steps(3);
+        assert_eq!(shown(&harness), Some(Hint::Lamp));
+        testing::click_at(&mut harness, from, egui::PointerButton::Secondary);
+        harness.get_by_label("Add Point Light Here").click();
+        harness.run_steps(3);
         assert_eq!(shown(&harness), Some(Hint::Look));
         harness.state_mut().session.document.preset.systems[0].emitter.radius_end *= 1.5;
+        harness.run_steps(3);
+        assert_eq!(shown(&harness), Some(Hint::Ramp));
+        harness.get_by_label("Ramps").click();
+        harness.run_steps(3);
+        assert_eq!(shown(&harness), Some(Hint::System));
+        harness.get_by_label("Add system").click();
+        harness.run_steps(3);
+        harness.get_by_label("Sparks").click();
         harness.run_steps(3);
         assert_eq!(shown(&harness), Some(Hint::Keys));
         harness.key_press(Key::Questionmark);
@@ -143,7 +173,7 @@ mod tests {
         assert_eq!(shown(&harness), None);
         harness.get_by_label("Show hints again").click();
         harness.run_steps(3);
-        assert_eq!(shown(&harness), Some(Hint::Orbit));
+        assert_eq!(shown(&harness), Some(Hint::Play));
         harness.get_by_label("Skip hints").click();
         harness.run_steps(3);
         assert_eq!(shown(&harness), None);
@@ -159,7 +189,7 @@ mod tests {
         window.persistence.take().unwrap().finish(&window.layout().clone());
         drop(harness);
         let mut harness = start(folder.path(), vec2(1000.0, 640.0), Theme::Light);
-        assert_eq!(shown(&harness), Some(Hint::Light));
+        assert_eq!(shown(&harness), Some(Hint::Orbit));
         harness.get_by_label("Skip hints").click();
         harness.run_steps(3);
         let window = harness.state_mut();

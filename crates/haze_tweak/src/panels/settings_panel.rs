@@ -12,6 +12,7 @@ use super::rows::{RowRequest, setting_rows, soft_fade_plot};
 use super::{lights_panel, look_panel, narrow, ramps_panel, sprite_panel, sun_panel, systems_panel};
 use crate::document::display_names::display_name;
 use crate::session::Session;
+use crate::session::first_run_hints::WindowPart;
 use crate::session::setting_search::SMOKE_TAB_GROUPS;
 use crate::session::view_options::Tab;
 
@@ -33,6 +34,8 @@ pub const TABS: [(Tab, &str, &str); 7] = [
 /// Draws the panel. Returns the path of a field if a sheet of its values is requested.
 pub fn panel(ui: &mut Ui, session: &mut Session) -> Option<String> {
     tab_row(ui, session);
+    // Some tabs have no list of systems.
+    session.hints.record_rect(WindowPart::AddSystem, egui::Rect::NOTHING);
     if session.view.tab == Tab::Performance {
         ui.separator();
         super::performance_panel::panel(ui, session);
@@ -66,7 +69,10 @@ fn tab_row(ui: &mut Ui, session: &mut Session) {
         ui.spacing_mut().item_spacing.x = 3.0;
         ui.spacing_mut().button_padding.x = 5.0;
         for (tab, name, tooltip) in TABS {
-            ui.selectable_value(&mut session.view.tab, tab, name).on_hover_text(tooltip);
+            let button = ui.selectable_value(&mut session.view.tab, tab, name).on_hover_text(tooltip);
+            if tab == Tab::Ramps {
+                session.hints.record_rect(WindowPart::RampsTab, button.rect);
+            }
         }
     };
     if narrow::is_narrow(ui.ctx()) {

@@ -7,6 +7,7 @@ use haze_preset::layers::{Layer, layers};
 use haze_preset::system_list::system_of;
 
 use crate::session::Session;
+use crate::session::first_run_hints::WindowPart;
 use crate::session::view_options::Tab;
 
 /// Edit that is made after the list is drawn.
@@ -47,7 +48,8 @@ pub fn panel(ui: &mut Ui, session: &mut Session) {
         if count == 0 {
             ui.horizontal(|ui| {
                 ui.weak("No systems");
-                apply(session, add_button(ui, count));
+                let edit = add_button(ui, session);
+                apply(session, edit);
             });
             return;
         }
@@ -103,7 +105,7 @@ fn row(ui: &mut Ui, session: &mut Session, index: usize) -> Option<Edit> {
     button.on_hover_text("Rename, duplicate, move or delete").accessible_name(format!("Edit {name}"));
     edit = chosen.and_then(|chosen| chosen.inner).or(edit);
     if is_selected {
-        edit = add_button(ui, count).or(edit);
+        edit = add_button(ui, session).or(edit);
     }
     edit
 }
@@ -165,10 +167,11 @@ fn entries(ui: &mut Ui, index: usize, count: usize) -> Option<Edit> {
 }
 
 /// Draws the button with the shelf of layers.
-fn add_button(ui: &mut Ui, count: usize) -> Option<Edit> {
-    let is_full = count >= MAX_SYSTEMS;
+fn add_button(ui: &mut Ui, session: &mut Session) -> Option<Edit> {
+    let is_full = session.document.preset.systems.len() >= MAX_SYSTEMS;
     let button = Button::new("Add").min_size(Vec2::new(ADD, ui.spacing().interact_size.y));
     let (button, chosen) = ui.add_enabled_ui(!is_full, |ui| MenuButton::from_button(button).ui(ui, shelf)).inner;
+    session.hints.record_rect(WindowPart::AddSystem, button.rect);
     let button = button.on_hover_text("Add a system: smoke, flame, sparks …");
     button.on_disabled_hover_text(format!("A preset has at most {MAX_SYSTEMS} systems")).accessible_name("Add system");
     chosen.and_then(|chosen| chosen.inner).map(Edit::Add)

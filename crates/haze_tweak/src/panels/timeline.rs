@@ -8,6 +8,7 @@ use haze_preset::{MAX_TIME, Preset};
 use super::narrow;
 use super::rows::icon_button::{self, Icon};
 use crate::session::Session;
+use crate::session::first_run_hints::WindowPart;
 
 pub fn panel(ui: &mut Ui, session: &mut Session) {
     narrow::row(ui, "timeline", |ui| {
@@ -17,7 +18,9 @@ pub fn panel(ui: &mut Ui, session: &mut Session) {
         }
         let (sign, name) =
             if playback.is_playing { (Icon::Pause, "Pause (Space)") } else { (Icon::Play, "Play (Space)") };
-        if icon_button::button(ui, sign, playback.is_playing, name).clicked() {
+        let play = icon_button::button(ui, sign, playback.is_playing, name);
+        session.hints.record_rect(WindowPart::Play, play.rect);
+        if play.clicked() {
             playback.is_playing = !playback.is_playing;
         }
         if icon_button::button(ui, Icon::Forward, false, "Next frame (.)").clicked() {

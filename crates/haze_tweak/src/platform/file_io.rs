@@ -60,3 +60,12 @@ pub fn free_copy_name(name: &str, is_free: impl Fn(&str) -> bool) -> String {
     });
     names.into_iter().find(|file| is_free(file)).unwrap_or_default()
 }
+
+/// Returns a name that only this text has.
+pub fn name_of_contents(text: &str) -> String {
+    // FNV-1a.
+    let hash = text
+        .bytes()
+        .fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3));
+    format!("{hash:016x}")
+}

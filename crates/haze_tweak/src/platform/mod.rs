@@ -12,6 +12,7 @@ mod disk;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod file_dialog;
 pub mod file_io;
+pub mod idle_timer;
 pub mod json_store;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod lock_file;

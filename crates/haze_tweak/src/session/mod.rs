@@ -473,7 +473,7 @@ impl Session {
         self.particle_files = LoadedParticles::new(&document.preset, particles);
         self.backdrop = LoadedBackdrop::new(&document.preset, backdrop);
         self.backdrop_folders.clear();
-        self.playback = Playback::of(&document.preset);
+        self.playback = Playback { is_playing: self.playback.is_playing, ..Playback::of(&document.preset) };
         self.compare = CompareState::default();
         self.view.system = 0;
         self.is_changed_on_disk = false;

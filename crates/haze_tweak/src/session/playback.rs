@@ -2,7 +2,7 @@
 
 use std::ops::RangeInclusive;
 
-use haze_preset::Preset;
+use haze_preset::{Preset, PresetSystem};
 
 /// Clock that can be paused, stepped and looped. Times are in seconds since the emission began.
 #[derive(Clone, Debug, PartialEq)]
@@ -24,12 +24,14 @@ pub const STEP: f64 = 1.0 / 30.0;
 const MAX_STEP: f64 = 0.1;
 
 impl Playback {
-    /// Returns a clock that is paused at a preset's time, with a loop that reaches to its last keyframe.
+    /// Returns a clock that is paused at a preset's time, with a range that reaches to its last keyframe. It loops if an
+    /// emission ends, so that a blast comes again.
     pub fn of(preset: &Preset) -> Self {
         let clock = Self::at(preset.time);
         let keys = preset.animation.iter().filter_map(|track| track.keys.last());
         let end = keys.fold(*clock.range.end(), |end, key| end.max(f64::from(key.time)));
-        Self { range: 0.0..=end, ..clock }
+        let ends = |system: &PresetSystem| system.emitter.duration > 0.0 && system.emitter.period <= 0.0;
+        Self { range: 0.0..=end, is_looping: preset.systems.iter().any(ends), ..clock }
     }
 
     /// Returns a clock that is paused at a time.
@@ -90,11 +92,16 @@ mod tests {
     }
 
     #[test]
-    fn the_loop_reaches_to_the_last_keyframe() {
+    fn the_range_reaches_to_the_last_keyframe_and_a_blast_loops() {
         let mut preset = Preset { time: 2.0, ..Preset::default() };
         assert_eq!(Playback::of(&preset), Playback::at(2.0));
         set_key(&mut preset, "camera.exposure", 25.0, KeyValue::Number(1.0));
         assert_eq!(Playback::of(&preset).range, 0.0..=25.0);
+        assert!(!Playback::of(&preset).is_looping);
+        let mut blast = PresetSystem::default();
+        blast.emitter.duration = 0.2;
+        preset.systems.push(blast);
+        assert!(Playback::of(&preset).is_looping, "a blast comes again");
     }
 
     #[test]

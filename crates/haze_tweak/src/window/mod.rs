@@ -25,12 +25,15 @@ use crate::files::hot_reload::{HotReload, ShaderFolder};
 use crate::files::persistence::{Layout, Persistence};
 use crate::files::preset_thumbnails::PresetThumbnails;
 use crate::files::shared_look;
+use crate::files::thumbnail_cache::ThumbnailCache;
 use crate::files::window_screenshot::Screenshot;
 use crate::panels;
 use crate::panels::debug_view_strip::{debug_view_strip, filled_height, next_debug_view};
+use crate::panels::start_view::StartChoice;
+use crate::platform::idle_timer::IdleTimer;
 use crate::platform::{IS_PAGE, clock, file_io, print_error};
 use crate::session::Session;
-use crate::session::action::{ACTIONS, Action};
+use crate::session::action::{ACTIONS, Action, keys_of};
 use crate::session::first_run_hints::WindowPart;
 use crate::session::view_options::Tab;
 use crate::viewport::Viewport;
@@ -47,8 +50,9 @@ pub struct Window {
     pub file_actions: FileActions,
     pub thumbnails: PresetThumbnails,
     pub export_job: ExportJob,
-    /// The list of presets is open.
-    has_browser: bool,
+    /// The presets to start from are shown.
+    has_start_view: bool,
+    idle: IdleTimer,
     pub persistence: Option<Persistence>,
     layout: Layout,
     settings_size: PanelTracker,
@@ -76,13 +80,16 @@ pub struct Start {
     pub layout: Layout,
     /// The system may have file dialogs.
     pub has_dialogs: bool,
+    pub cache: ThumbnailCache,
+    /// Begins with presets to start from.
+    pub has_start_view: bool,
 }
 
 impl Window {
     /// # Errors
     /// [`AssetError::Io`](haze_core::error::AssetError::Io) if the system cannot start another thread.
     pub fn new(renderer: ViewportRenderer, start: Start) -> Result<Self, Error> {
-        let Start { mut session, shaders, persistence, layout, has_dialogs } = start;
+        let Start { mut session, shaders, persistence, layout, has_dialogs, cache, has_start_view } = start;
         session.attach_window(renderer.egui());
         renderer.egui().add_glyph_rasterizer(panels::rows::copy_icon::rasterizer());
         if renderer.is_software() {
@@ -102,13 +109,14 @@ impl Window {
         if let Some(theme) = layout.theme() {
             renderer.egui().set_theme(theme);
         }
-        Ok(Self {
+        let mut window = Self {
             hot_reload: HotReload::new(&session, &shaders, &renderer, renderer.wake())?,
             file_actions: FileActions::new(has_dialogs, renderer.wake())?,
-            thumbnails: PresetThumbnails::new(renderer.wake())?,
+            thumbnails: PresetThumbnails::new(cache, renderer.wake())?,
             export_job: ExportJob::new(renderer.wake(), layout.export_folder.clone())?,
             viewport: Viewport::default(),
-            has_browser: false,
+            has_start_view: false,
+            idle: IdleTimer::default(),
             persistence,
             layout,
             settings_size: PanelTracker::default(),
@@ -121,13 +129,18 @@ impl Window {
             screenshot: Screenshot::default(),
             session,
             renderer,
-        })
+        };
+        if has_start_view {
+            window.open_start_view();
+        }
+        Ok(window)
     }
 
     /// Returns the state that another window can continue with.
     pub fn into_start(self) -> Start {
-        let Self { session, shaders, persistence, layout, has_dialogs, .. } = self;
-        Start { session, shaders, persistence, layout, has_dialogs }
+        let Self { session, shaders, persistence, layout, has_dialogs, thumbnails, has_start_view, .. } = self;
+        let cache = thumbnails.cache;
+        Start { session, shaders, persistence, layout, has_dialogs, cache, has_start_view }
     }
 
     #[cfg(test)]
@@ -150,7 +163,7 @@ impl Window {
         let is_requested = self.file_actions.waiting.is_some()
             || self.file_actions.typed.is_some()
             || self.session.copy_request.is_some();
-        let is_modal = self.session.search.is_open || self.session.view.help || self.has_browser || is_requested;
+        let is_modal = self.session.search.is_open || self.session.view.help || self.has_start_view || is_requested;
         // An open menu receives the keys, such as Escape to close it.
         let is_menu = egui::Popup::is_any_open(ui.ctx());
         if ui.ctx().text_edit_focused() || is_modal || is_menu || self.viewport.is_dragging() {
@@ -179,11 +192,7 @@ impl Window {
     fn act(&mut self, action: Action, context: &egui::Context) {
         let session = &mut self.session;
         match action {
-            Action::Presets => {
-                self.has_browser = true;
-                let folder = session.document.path().parent().unwrap_or(Path::new(""));
-                self.thumbnails.list(folder, session.assets.as_deref());
-            }
+            Action::Presets => self.open_start_view(),
             Action::Open => self.file_actions.ask_open(session),
             Action::Save => self.file_actions.save(session),
             Action::SaveAs => self.file_actions.save_as(session),
@@ -217,6 +226,29 @@ impl Window {
             Action::Image => session.view.debug_view = DebugView::Final,
             Action::Help => session.view.help = !session.view.help,
             Action::InView(action) => self.viewport.act(action, session),
+        }
+    }
+
+    /// Shows the presets to start from.
+    fn open_start_view(&mut self) {
+        self.has_start_view = true;
+        let folder = self.session.document.path().parent().unwrap_or(Path::new(""));
+        self.thumbnails.list(folder, self.session.assets.as_deref(), &self.layout.recent);
+    }
+
+    fn start_view(&mut self, ui: &Ui) {
+        // A focused card receives Space.
+        let is_free = ui.memory(egui::Memory::focused).is_none();
+        if is_free && keys_of(Action::Play).is_some_and(|keys| ui.input_mut(|input| input.consume_shortcut(&keys))) {
+            self.act(Action::Play, ui.ctx());
+        }
+        let Some(choice) = panels::start_view::panel(ui, &mut self.thumbnails, self.idle) else { return };
+        self.has_start_view = false;
+        self.thumbnails.stop();
+        match choice {
+            StartChoice::Open(path) => self.file_actions.open(path, &self.session),
+            StartChoice::AskOpen => self.file_actions.ask_open(&self.session),
+            StartChoice::Close => {}
         }
     }
 
@@ -297,7 +329,9 @@ impl Window {
         if let Some(probe_job) = &mut self.probe_job {
             probe_job.update(ui, &mut self.session, &self.renderer);
         }
-        panels::hint_popup::panel(ui, &mut self.session, is_touched, self.viewport.is_dragging());
+        if !self.has_start_view {
+            panels::hint_popup::panel(ui, &mut self.session, is_touched, self.viewport.is_dragging());
+        }
         panels::search_box::panel(ui, &mut self.session);
         panels::key_list::panel(ui, &mut self.session);
         panels::export_dialog::panel(ui, &mut self.export_job, &mut self.session);
@@ -309,14 +343,8 @@ impl Window {
             self.file_actions.save_as(&self.session);
         }
         panels::file_menu::questions(ui, &mut self.file_actions, &mut self.session);
-        if self.has_browser
-            && let Some(chosen) = panels::preset_browser::panel(ui, &mut self.thumbnails)
-        {
-            self.has_browser = false;
-            self.thumbnails.stop();
-            if let Some(path) = chosen {
-                self.file_actions.open(path, &self.session);
-            }
+        if self.has_start_view {
+            self.start_view(ui);
         }
     }
 
@@ -356,9 +384,15 @@ impl Window {
             print_error(&error);
             self.session.messages.error("device", error);
         }
-        if self.session.playback.is_playing {
+        if self.is_playing() {
             ui.ctx().request_repaint();
         }
+    }
+
+    /// Returns true if time passes. Where the CPU draws, it stands behind the start view, and leaves the time to its
+    /// thumbnails.
+    fn is_playing(&self) -> bool {
+        self.session.playback.is_playing && !(self.has_start_view && self.renderer.is_software())
     }
 }
 
@@ -377,13 +411,17 @@ impl eframe::App for Window {
         if let Some(left) = self.session.messages.advance(clock::now(), acts) {
             ui.ctx().request_repaint_after(left);
         }
+        self.idle.follow(ui.ctx());
         self.keys(ui);
         self.hot_reload.advance(&mut self.session, &self.renderer);
         let is_touched = ui.input(|input| input.pointer.any_down() || input.smooth_scroll_delta() != egui::Vec2::ZERO);
         let is_turning = self.session.view.lights.turn.is_some();
-        self.renderer.begin_frame(is_touched, is_turning || self.session.playback.is_playing);
+        let is_playing = self.is_playing();
+        self.renderer.begin_frame(is_touched, is_turning || is_playing);
         self.file_actions.advance(&mut self.session, ui.ctx());
-        self.session.playback.advance(f64::from(ui.input(|input| input.stable_dt)));
+        if is_playing {
+            self.session.playback.advance(f64::from(ui.input(|input| input.stable_dt)));
+        }
         panels::narrow::set_spacing(ui);
         self.bars(ui);
         self.settings(ui);

@@ -16,6 +16,7 @@ use super::device::device;
 use super::{Start, Window};
 use crate::files::hot_reload::ShaderFolder;
 use crate::files::persistence::Layout;
+use crate::files::thumbnail_cache::ThumbnailCache;
 use crate::session::Session;
 use crate::viewport_renderer::ViewportRenderer;
 
@@ -30,8 +31,20 @@ pub fn window_with(preset: &str, size: Vec2, theme: egui::Theme, shaders: Shader
 }
 
 fn start(preset: &str, shaders: ShaderFolder) -> Start {
-    let session = Session::open(Path::new(preset), None).unwrap();
-    Start { session, shaders, persistence: None, layout: Layout::default(), has_dialogs: false }
+    Start { shaders, ..start_of(Session::open(Path::new(preset), None).unwrap()) }
+}
+
+/// Returns a start that shows a session and nothing else, and keeps nothing.
+pub fn start_of(session: Session) -> Start {
+    Start {
+        session,
+        shaders: ShaderFolder::None,
+        persistence: None,
+        layout: Layout::default(),
+        has_dialogs: false,
+        cache: ThumbnailCache::default(),
+        has_start_view: false,
+    }
 }
 
 /// Like [`window`], with any start state.

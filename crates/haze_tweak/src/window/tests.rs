@@ -1,6 +1,7 @@
 //! Tests of the whole window: actions on controls are checked in the image.
 
 mod idle_cost;
+mod start_view;
 mod task_script;
 
 use eframe::egui::{Key, Modifiers, Pos2, Rect, Role, Theme, Vec2};

@@ -13,7 +13,6 @@ use haze_preset::Preset;
 use tempfile::TempDir;
 
 use super::*;
-use crate::files::hot_reload::ShaderFolder;
 use crate::files::persistence::{Layout, Persistence};
 use crate::files::shared_look;
 use crate::window::{Start, Window, testing};
@@ -36,8 +35,7 @@ fn bench() -> Bench {
 fn window(path: &Path, state: Option<PathBuf>) -> Harness<'static, Window> {
     let mut session = Session::open(path, None).unwrap();
     let persistence = state.map(|folder| Persistence::new(folder, &mut session));
-    let start =
-        Start { session, shaders: ShaderFolder::None, persistence, layout: Layout::default(), has_dialogs: false };
+    let start = Start { persistence, ..testing::start_of(session) };
     testing::open(start, Vec2::new(800.0, 500.0), Theme::Dark)
 }
 
@@ -354,7 +352,7 @@ fn the_preset_list_shows_built_in_presets_and_those_of_the_folder() {
     let mut bench = bench();
     fs::write(bench.path("no_preset.json"), "{}").unwrap();
     bench.press(Modifiers::COMMAND, Key::N);
-    bench.until(|bench| bench.window.state().thumbnails.entries.iter().all(|entry| entry.shown.is_some()));
+    bench.until(|bench| bench.window.state().thumbnails.entries.iter().all(|entry| entry.about.is_some()));
     let names: Vec<_> = bench.window.state().thumbnails.entries.iter().map(|entry| entry.path.clone()).collect();
     assert!(names.contains(&bench.path("my.json")) && names.contains(&"fence".into()), "{names:?}");
     assert!(!names.contains(&bench.path("no_preset.json")));

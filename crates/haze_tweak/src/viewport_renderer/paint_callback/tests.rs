@@ -10,19 +10,15 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 
 use super::*;
-use crate::files::hot_reload::ShaderFolder;
-use crate::files::persistence::Layout;
 use crate::session::Session;
 use crate::viewport_renderer::compared_side::ComparedSide;
-use crate::window::testing::{brightness, screenshot};
-use crate::window::{Start, Window};
+use crate::window::Window;
+use crate::window::testing::{brightness, screenshot, start_of};
 
 /// Opens a window, and returns the render state of its egui.
 fn window() -> (Harness<'static, Window>, RenderState) {
     let session = Session::open(Path::new("column"), None).unwrap();
-    let shaders = ShaderFolder::None;
-    let layout = Layout::default();
-    let start = Start { session, shaders, persistence: None, layout, has_dialogs: false };
+    let start = start_of(session);
     let state = Rc::new(RefCell::new(None));
     let its = Rc::clone(&state);
     let builder = Harness::builder().with_size(egui::vec2(640.0, 400.0)).with_theme(Theme::Dark).wgpu();
