@@ -12,11 +12,14 @@ use crate::session::Session;
 
 /// Number of frames after which the window has settled.
 const SETTLED_FRAMES: u32 = 6;
+/// Number of frames after which a system whose thumbnail fails is no longer waited for.
+const MAX_FRAMES: u32 = 1000;
 
 #[derive(Default)]
 pub struct Screenshot {
     /// Number of frames that were shown.
     frames: u32,
+    is_requested: bool,
     taken: Arc<Mutex<Option<Arc<egui::ColorImage>>>>,
 }
 
@@ -31,7 +34,8 @@ impl Screenshot {
                 session.messages.error("screenshot", error);
             }
             ui.ctx().send_viewport_cmd(egui::ViewportCommand::Close);
-        } else if self.frames == SETTLED_FRAMES {
+        } else if !self.is_requested && self.is_settled(session) {
+            self.is_requested = true;
             let taken = self.taken.clone();
             let context = ui.ctx().clone();
             ui.ctx().request_screenshot(move |image| {
@@ -40,6 +44,12 @@ impl Screenshot {
             });
         }
         ui.ctx().request_repaint();
+    }
+
+    fn is_settled(&self, session: &Session) -> bool {
+        let images = &session.view.systems.images;
+        let has_images = images.len() == session.document.preset.systems.len() && images.iter().all(Option::is_some);
+        self.frames >= SETTLED_FRAMES && has_images || self.frames >= MAX_FRAMES
     }
 }
 

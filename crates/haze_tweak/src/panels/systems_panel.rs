@@ -1,7 +1,7 @@
 //! List of systems: select, add, duplicate, rename, delete, move, mute and solo.
 
 use eframe::egui::containers::menu::MenuButton;
-use eframe::egui::{self, Button, Key, RichText, Ui, Vec2};
+use eframe::egui::{self, Button, Key, RichText, Sense, Ui, Vec2};
 use haze_preset::MAX_SYSTEMS;
 use haze_preset::layers::{Layer, layers};
 use haze_preset::system_list::system_of;
@@ -25,6 +25,9 @@ enum Edit {
 /// Fraction of the panel's height that the list takes at most, and rows that it shows at least.
 const MAX_FRACTION: f32 = 0.3;
 const MIN_ROWS: f32 = 2.0;
+
+/// Size of the image of a system, points.
+const IMAGE: Vec2 = Vec2::new(36.0, 24.0);
 
 /// Width of the buttons of a letter and of the button that adds a system; gap between them, points.
 const LETTER: f32 = 22.0;
@@ -53,6 +56,8 @@ pub fn panel(ui: &mut Ui, session: &mut Session) {
             });
             return;
         }
+        // Rows are as high as their images.
+        ui.spacing_mut().interact_size.y = ui.spacing().interact_size.y.max(IMAGE.y);
         let row_height = ui.spacing().interact_size.y + GAP;
         let most = (MAX_FRACTION * ui.available_height()).max(MIN_ROWS * row_height);
         let area = egui::ScrollArea::vertical().id_salt("systems").max_height(most).auto_shrink([false, true]);
@@ -80,6 +85,7 @@ fn row(ui: &mut Ui, session: &mut Session, index: usize) -> Option<Edit> {
     let count = session.document.preset.systems.len();
     let name = session.document.preset.systems.get(index)?.name.clone();
     let is_selected = session.view.system == index;
+    image(ui, session, index);
     let size =
         Vec2::new((ui.available_width() - 3.0 * LETTER - ADD - 4.0 * GAP).max(40.0), ui.spacing().interact_size.y);
     let mut edit = None;
@@ -108,6 +114,20 @@ fn row(ui: &mut Ui, session: &mut Session, index: usize) -> Option<Edit> {
         edit = add_button(ui, session).or(edit);
     }
     edit
+}
+
+/// Draws the image of a system alone.
+fn image(ui: &mut Ui, session: &Session, index: usize) {
+    let (rect, _) = ui.allocate_exact_size(IMAGE, Sense::hover());
+    let corner = ui.visuals().widgets.inactive.corner_radius;
+    match session.view.systems.images.get(index).copied().flatten() {
+        Some(texture) => {
+            let image = egui::Image::new(egui::load::SizedTexture::new(texture, IMAGE));
+            let tint = if session.view.systems.is_shown(&session.document.preset.systems, index) { 1.0 } else { 0.3 };
+            image.corner_radius(corner).tint(egui::Color32::WHITE.gamma_multiply(tint)).paint_at(ui, rect);
+        }
+        None => _ = ui.painter().rect_filled(rect, corner, ui.visuals().extreme_bg_color),
+    }
 }
 
 /// Draws the field in which a name is typed.

@@ -204,6 +204,7 @@ impl Session {
         self.thumbnails = ImageThumbnails::default();
         self.flipbook = None;
         self.looks = LookThumbnails::default();
+        self.view.systems.images.clear();
     }
 
     /// Returns the folders where images are looked up.

@@ -2,6 +2,7 @@
 
 use std::collections::HashMap;
 
+use eframe::egui::TextureId;
 use haze_preset::{ParticleFiles, Preset, PresetSystem};
 
 use super::light_view::MuteSolo;
@@ -19,6 +20,8 @@ pub struct SystemView {
     pub renaming: Option<(usize, String)>,
     /// The selected system is brought into view in the next frame.
     pub reveals_selected: bool,
+    /// Image of each system alone, once it is rendered.
+    pub images: Vec<Option<TextureId>>,
 }
 
 impl SystemView {

@@ -1,7 +1,7 @@
 //! Viewport: the image, and its control by pointer and keys.
 
 mod camera_input;
-mod camera_moves;
+pub mod camera_moves;
 mod context_menu;
 mod handle_drag;
 mod light_gizmo;

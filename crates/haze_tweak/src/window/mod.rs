@@ -9,6 +9,7 @@ pub mod page_window;
 mod panel_size;
 mod status_bar;
 pub mod surface_pacing;
+mod system_thumbnails;
 #[cfg(test)]
 pub mod testing;
 mod title_bar;
@@ -41,6 +42,7 @@ use crate::viewport::pixel_readout as inspector;
 use crate::viewport::probe_job::ProbeJob;
 use crate::viewport_renderer::ViewportRenderer;
 use panel_size::PanelTracker;
+use system_thumbnails::SystemThumbnails;
 
 pub struct Window {
     pub session: Session,
@@ -49,6 +51,7 @@ pub struct Window {
     viewport: Viewport,
     pub file_actions: FileActions,
     pub thumbnails: PresetThumbnails,
+    system_thumbnails: SystemThumbnails,
     pub export_job: ExportJob,
     /// The presets to start from are shown.
     has_start_view: bool,
@@ -113,6 +116,7 @@ impl Window {
             hot_reload: HotReload::new(&session, &shaders, &renderer, renderer.wake())?,
             file_actions: FileActions::new(has_dialogs, renderer.wake())?,
             thumbnails: PresetThumbnails::new(cache, renderer.wake())?,
+            system_thumbnails: SystemThumbnails::default(),
             export_job: ExportJob::new(renderer.wake(), layout.export_folder.clone())?,
             viewport: Viewport::default(),
             has_start_view: false,
@@ -286,6 +290,10 @@ impl Window {
 
     /// Draws the settings panel: at the right, or below the image of a narrow window.
     fn settings(&mut self, ui: &mut Ui) {
+        // Those of the presets come first.
+        if !self.has_start_view {
+            self.system_thumbnails.advance(ui.ctx(), &mut self.session, self.idle);
+        }
         if panels::narrow::is_narrow(ui.ctx()) {
             let height = 0.4 * ui.available_height();
             let panel = egui::Panel::bottom("settings_below").resizable(true).default_size(height);

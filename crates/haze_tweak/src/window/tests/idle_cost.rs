@@ -1,6 +1,6 @@
 //! Cost of the window while it is used and while it is idle.
 
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use eframe::egui::{Pos2, Rect, Role, Theme, Vec2, pos2, vec2};
 use egui_kittest::Harness;
@@ -69,6 +69,48 @@ fn a_slider_is_dragged_at_15_frames_a_second() {
     }
 }
 
+/// Waits for the thumbnails of the systems.
+fn wait_for_systems(harness: &mut Harness<'_, Window>) {
+    let start = Instant::now();
+    while !matches!(&harness.state().session.view.systems.images[..], [Some(_), ..]) {
+        assert!(start.elapsed() < Duration::from_secs(60), "no thumbnail");
+        std::thread::sleep(Duration::from_millis(20));
+        harness.step();
+    }
+}
+
+#[test]
+fn the_thumbnail_of_a_system_follows_its_settings_after_a_drag() {
+    let mut harness = window("column", Vec2::new(700.0, 480.0), Theme::Dark);
+    wait_for_systems(&mut harness);
+    let image = |harness: &Harness<'_, Window>| harness.state().session.view.systems.images[0];
+    let before = image(&harness);
+    // A turn of the camera, and time, renew nothing.
+    harness.state_mut().session_mut().document.preset.camera.position.x += 1.0;
+    harness.state_mut().session_mut().playback.time += 1.0;
+    let rest = |harness: &mut Harness<'_, Window>| {
+        for _ in 0..60 {
+            std::thread::sleep(Duration::from_millis(20));
+            harness.step();
+        }
+    };
+    rest(&mut harness);
+    assert_eq!(image(&harness), before);
+    let rect = slider(&harness, "Thickness");
+    harness.drag_at(rect.center());
+    harness.step();
+    harness.hover_at(rect.right_center());
+    rest(&mut harness);
+    assert_eq!(image(&harness), before, "not while it is dragged");
+    harness.drop_at(rect.right_center());
+    let start = Instant::now();
+    while image(&harness) == before {
+        assert!(start.elapsed() < Duration::from_secs(60), "not renewed");
+        std::thread::sleep(Duration::from_millis(20));
+        harness.step();
+    }
+}
+
 #[test]
 fn stages_that_are_drawn_one_by_one_end_as_those_drawn_at_once() {
     let mut harness = window("column", Vec2::new(700.0, 480.0), Theme::Dark);
@@ -96,6 +138,7 @@ fn stages_that_are_drawn_one_by_one_end_as_those_drawn_at_once() {
 #[test]
 fn an_idle_window_draws_nothing_and_requests_no_repaint() {
     let mut harness = window("column", Vec2::new(700.0, 480.0), Theme::Dark);
+    wait_for_systems(&mut harness);
     let drawn = |harness: &mut Harness<'_, Window>| {
         screenshot(harness);
         harness.state().renderer().render_stats().renders
