@@ -16,7 +16,8 @@ use haze_author::noise_recipe::NoiseRecipe;
 use haze_author::particle_files;
 use haze_author::ramp::RampRecipe;
 use haze_author::ramp::motif::MotifRecipe;
-use haze_author::sprite::bake::SpriteRecipe;
+use haze_author::simulation::{VolumeOptions, VolumeSequence};
+use haze_author::sprite::bake::{SheetLayout, SpriteRecipe};
 use haze_core::assets::image::read_png;
 use haze_core::assets::noise::NoiseVolume;
 use haze_core::assets::ramp::Ramp;
@@ -88,6 +89,11 @@ fn read(kind: &str, path: &Path) -> Result<(), AssetError> {
             let frame = frame.map_err(|error| error.into_error(path))?;
             assert!(frame.particles().len() <= 1000, "{} particles", frame.particles().len());
             assert!(frame.particles().iter().all(|particle| particle.position.is_finite() && particle.radius >= 0.0));
+        }
+        "vdb" => {
+            let sheet = SheetLayout { size: 8, columns: 1, rows: 1, tolerance: 0 };
+            let options = VolumeOptions { resolution: 16, sheet, ..VolumeOptions::default() };
+            VolumeSequence::find(path)?.record(&options, |_| Ok::<_, AssetError>(()))?.recording.bake();
         }
         other => panic!("tests/corpus/{other}: no reader for this kind of file"),
     }

@@ -15,3 +15,4 @@ pub mod preset;
 pub mod ramp;
 pub mod simulation;
 pub mod sprite;
+pub mod vdb;

@@ -14,10 +14,10 @@ use super::particle_frame::{FileParticle, ParticleFrame};
 
 /// Temperatures of heat 0 and heat 1, kelvin. Bodies begin to glow visibly near 800 K (Draper, 1847); soot in a flame
 /// has up to about 2000 K.
-const KELVIN: RangeInclusive<f32> = 800.0..=2000.0;
+pub const KELVIN: RangeInclusive<f32> = 800.0..=2000.0;
 
 /// Larger temperatures are kelvin: no smoke is colder than 200 K.
-const MIN_KELVIN: f32 = 200.0;
+pub const MIN_KELVIN: f32 = 200.0;
 
 /// Name of heat that two conventions share: 0 to 1 in Blender and Houdini, kelvin in physical simulations.
 const TEMPERATURE: &str = "temperature";

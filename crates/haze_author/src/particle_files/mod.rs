@@ -16,6 +16,7 @@ mod ply;
 mod preset_files;
 
 pub use file_frame::ColumnUse;
+pub(crate) use file_frame::{KELVIN, MIN_KELVIN};
 pub use parse_error::ParseError;
 pub use particle_frame::{FileParticle, ParticleFrame, ProvidedAttributes};
 pub use particle_frames::{FramePair, Limits, MAX_FILE_BYTES, ParticleFrames, parse};

@@ -5,7 +5,7 @@ use haze_core::formula::curve::smoothstep_unit;
 
 use super::domain::Domain;
 use super::recorded_frame::Extent;
-use super::sim_recipe::{Framing, SimRecipe};
+use super::sim_recipe::{Framing, View};
 
 /// Distance from an open side of the box within which smoke fades, cells of the velocity.
 const BOX_FADE: f32 = 4.0;
@@ -28,18 +28,18 @@ pub struct Window {
 }
 
 impl Window {
-    /// Returns the window of a recipe whose smoke has an extent in all frames.
-    pub fn new(recipe: &SimRecipe, domain: Domain, smoke: Extent) -> Self {
+    /// Returns the window of frames whose smoke has an extent in all of them. `domain`: cells of the velocity.
+    pub fn new(view: &View, domain: Domain, has_ground: bool, smoke: Extent) -> Self {
         let size = domain.grid.size.as_vec3();
         let mut box_low = domain.position(Vec3::splat(0.5));
         let box_high = domain.position(size + 0.5);
-        let mut shown = match recipe.view.framing {
+        let mut shown = match view.framing {
             Framing::Smoke if smoke.low.cmple(smoke.high).all() => smoke,
             Framing::Smoke | Framing::Box => Extent { low: box_low.truncate(), high: box_high.truncate() },
         };
-        let margin = recipe.view.margin.min(0.45);
+        let margin = view.margin.min(0.45);
         let box_fade = BOX_FADE * domain.cell_width();
-        if recipe.grid.ground {
+        if has_ground {
             // Smoke continues below the ground, where it fades: a sprite with a straight cut could not be turned.
             box_low.y -= box_fade;
             if shown.low.y < domain.cell_width() {
@@ -54,7 +54,7 @@ impl Window {
             box_low,
             box_high,
             box_fade,
-            lowest: if recipe.grid.ground { domain.cell_width() * 0.5 } else { f32::NEG_INFINITY },
+            lowest: if has_ground { domain.cell_width() * 0.5 } else { f32::NEG_INFINITY },
         }
     }
 

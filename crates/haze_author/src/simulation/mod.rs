@@ -11,15 +11,20 @@ mod fluid;
 mod forces;
 mod framing;
 mod grid;
+mod moment;
 mod pressure;
 mod recorded_frame;
 mod sim_recipe;
+mod simulate;
 mod source;
 mod sources;
+mod volume_files;
 
-pub use bake::{BakedSimulation, Simulation};
+pub use bake::{BakedRecording, Recording};
+pub use moment::Moment;
 pub use sim_recipe::{FrameLoop, Framing, GridSize, Obstacle, Physics, RECIPE_VERSION, SimRecipe, TimeSpan, View};
 pub use source::{Source, SourceShape};
+pub use volume_files::{VolumeOptions, VolumeRecording, VolumeSequence};
 
 #[cfg(test)]
 mod tests;

@@ -4,7 +4,6 @@ use glam::{UVec3, Vec2, Vec3, Vec4};
 use half::f16;
 
 use super::domain::Domain;
-use super::fluid::Fluid;
 use super::grid::{CellBox, Grid};
 use super::sim_recipe::View;
 
@@ -43,10 +42,22 @@ pub struct FrameSampler {
     values: Vec<Vec4>,
 }
 
+/// Gas on a grid, to be recorded.
+pub struct FrameGas<'a, V> {
+    /// Grid of the gas.
+    pub fine: Domain,
+    /// Cells that hold gas.
+    pub occupied: CellBox,
+    /// Smoke and heat of every cell of the grid, in x and y.
+    pub gas: &'a [Vec4],
+    /// Velocity along x and y of a cell, box widths per second.
+    pub velocity: V,
+}
+
 impl RecordedFrame {
-    pub fn new(fluid: &Fluid<'_>, view: &View) -> Self {
-        let cells = fluid.occupied;
-        let mut recorded = Self { cells, values: Vec::new(), extent: Extent::EMPTY };
+    pub fn new<V: Fn(UVec3) -> Vec2 + Sync>(frame: &FrameGas<'_, V>, view: &View) -> Self {
+        let FrameGas { fine, occupied: cells, gas, velocity } = frame;
+        let mut recorded = Self { cells: *cells, values: Vec::new(), extent: Extent::EMPTY };
         if cells.is_empty() {
             return recorded;
         }
@@ -55,13 +66,12 @@ impl RecordedFrame {
         grid.for_rows(&mut values, |first, row| {
             for (x, value) in (0_u32..).zip(row) {
                 let cell = first + UVec3::X * x + cells.low - 1;
-                let gas = fluid.gas[fluid.fine.grid.index(cell)];
-                let position = fluid.fine.position(cell.as_vec3());
-                let velocity = fluid.domain.grid.sample(&fluid.centered, fluid.domain.coordinate(position));
-                *value = [gas.x, gas.y, velocity.x, velocity.y].map(f16::from_f32);
+                let [smoke, heat, ..] = gas[fine.grid.index(cell)].to_array();
+                let velocity = velocity(cell);
+                *value = [smoke, heat, velocity.x, velocity.y].map(f16::from_f32);
             }
         });
-        recorded.extent = extent(fluid.fine, cells, &fluid.gas, view);
+        recorded.extent = extent(*fine, *cells, gas, view);
         recorded.values = values;
         recorded
     }

@@ -167,6 +167,16 @@ choice! {
     }
 }
 
+impl FrameLoop {
+    /// Returns the number of frames after the sheet's that blend into its first ones. `blend`: fraction of the loop.
+    pub fn blended_frames(self, sheet_frames: u32, blend: f32) -> u32 {
+        match self {
+            Self::Once => 0,
+            Self::CrossBlend => (sheet_frames as f32 * blend).round() as u32,
+        }
+    }
+}
+
 /// Moments that become frames.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -185,8 +195,11 @@ pub struct TimeSpan {
     pub blend: f32,
 }
 
+/// Fraction of the loop in which `cross_blend` blends by default.
+pub const DEFAULT_BLEND: f32 = 0.3;
+
 fn default_blend() -> f32 {
-    0.3
+    DEFAULT_BLEND
 }
 
 choice! {

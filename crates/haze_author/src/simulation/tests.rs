@@ -31,7 +31,7 @@ fn small() -> SimRecipe {
     json::parse(Path::new("small.sim.json"), text).unwrap()
 }
 
-fn run(recipe: &SimRecipe) -> BakedSimulation {
+fn run(recipe: &SimRecipe) -> BakedRecording {
     recipe.simulate(|_| Ok::<_, FieldError>(())).unwrap().bake()
 }
 
@@ -121,7 +121,7 @@ fn every_machine_simulates_the_same_bytes() {
     fire.obstacle = Some(Obstacle { position: Vec3::new(0.1, 0.8, 0.0), radius: Vec3::splat(0.15) });
     fire.time.frame_loop = FrameLoop::CrossBlend;
     let found = [small(), fire].map(|recipe| {
-        let BakedSimulation { sprite, heat } = run(&recipe);
+        let BakedRecording { sprite, heat } = run(&recipe);
         let heat = heat.map(image::ImageBuffer::into_raw).unwrap_or_default();
         hash(sprite.image.into_raw().into_iter().chain(sprite.detail.into_raw()).chain(heat))
     });
@@ -199,7 +199,7 @@ fn frames_are_clear_at_their_borders_and_motion_predicts_the_next() {
     let mut recipe = small();
     recipe.grid = GridSize { width: 24, height: 32, depth: 24, ..recipe.grid };
     recipe.sheet.size = 64;
-    let BakedSimulation { sprite: baked, heat } = run(&recipe);
+    let BakedRecording { sprite: baked, heat } = run(&recipe);
     assert!(heat.is_none());
     // Refuses frames that are not clear at the border.
     let sprite = Sprite::from_image(Path::new("small.png"), &baked.image, recipe.sheet.layout()).unwrap();

@@ -5,8 +5,10 @@ mod check;
 mod export;
 mod import;
 mod light;
+mod recording_output;
 mod simulate;
 mod six_way;
+mod volumes;
 
 use clap::{Args, Subcommand};
 
@@ -20,7 +22,8 @@ pub struct SpriteArguments {
 
 #[derive(Subcommand)]
 enum SpriteCommand {
-    /// Bake every recipe to PNGs beside it: NAME.png, and for a sprite also NAME.detail.png with its depth and motion.
+    /// Bake every recipe to PNGs beside it: NAME.png, and for a sprite also NAME.detail.png with its depth and motion. Or
+    /// the smoke of VDB files, also to NAME.heat.png if it is hot.
     Bake(bake::Arguments),
     /// Simulate smoke and fire, and bake the frames to NAME.png, NAME.detail.png and, if it burns, NAME.heat.png. Takes
     /// minutes.

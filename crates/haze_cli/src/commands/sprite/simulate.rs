@@ -6,16 +6,16 @@ use std::time::Instant;
 
 use clap::Args;
 use haze::FieldError;
-use haze_author::simulation::{SimRecipe, Simulation};
+use haze_author::simulation::{Recording, SimRecipe};
 use haze_core::error::Error;
-use haze_export::output::{Failures, FileChecks, print_line};
-use haze_export::progress::{with_changing_progress, with_progress};
+use haze_export::output::{Failures, FileChecks, OutputFolder, print_line};
+use haze_export::progress::with_changing_progress;
 use haze_export::recipe_files::image_path;
-use haze_preset::write_baked_png;
-use image::DynamicImage;
+use haze_preset::write_file;
 
+use super::recording_output::RecordingOutput;
 use super::six_way::SixWayArguments;
-use crate::bake_job::{OverwriteArguments, PaintedPng, check_not_painted};
+use crate::bake_job::OverwriteArguments;
 
 #[derive(Args)]
 pub struct Arguments {
@@ -25,6 +25,10 @@ pub struct Arguments {
     /// Simulate on half the grid with a quarter of the frames, to NAME_preview.png and so on. Takes seconds.
     #[arg(long)]
     preview: bool,
+    /// Also write the smoke of every moment to FOLDER/NAME_####.vdb, for other tools: density, temperature if it burns,
+    /// and vel. Lengths in widths of the box, times in seconds, y up.
+    #[arg(long, value_name = "FOLDER")]
+    vdb: Option<PathBuf>,
     #[command(flatten)]
     six_way: SixWayArguments,
     #[command(flatten)]
@@ -32,71 +36,63 @@ pub struct Arguments {
 }
 
 pub fn run(arguments: &Arguments) -> Result<(), Failures> {
-    let Arguments { recipes, preview, six_way, overwrite } = arguments;
-    six_way.check_options()?;
-    let mut files = FileChecks::for_inputs(recipes);
-    let load = |path| Job::load(path, *preview, six_way, overwrite.painted_png(), &mut files);
-    let (jobs, failures) = Failures::of_each(recipes, load);
+    arguments.six_way.check_options()?;
+    let mut files = FileChecks::for_inputs(&arguments.recipes);
+    let _made = arguments.vdb.as_ref().map(|folder| OutputFolder::make("--vdb", folder)).transpose()?;
+    let (jobs, failures) = Failures::of_each(&arguments.recipes, |path| Job::load(path, arguments, &mut files));
     failures.into_result()?;
-    jobs.iter().try_for_each(|job| job.run(six_way)).map_err(Failures::from)
+    jobs.iter().try_for_each(|job| job.run(&arguments.six_way)).map_err(Failures::from)
 }
 
-/// A valid recipe, with the files that its images go to.
+/// A valid recipe, with the files that its images and moments go to.
 struct Job<'a> {
     path: &'a Path,
     recipe: SimRecipe,
-    image: PathBuf,
-    outputs: Vec<PathBuf>,
-    painted: PaintedPng,
+    output: RecordingOutput<'a>,
+    /// Folder of the VDB files, and their names before the number.
+    volumes: Option<(&'a Path, String)>,
 }
 
 impl<'a> Job<'a> {
-    fn load(
-        path: &'a PathBuf,
-        preview: bool,
-        six_way: &SixWayArguments,
-        painted: PaintedPng,
-        files: &mut FileChecks,
-    ) -> Result<Self, Error> {
+    fn load(path: &'a PathBuf, arguments: &'a Arguments, files: &mut FileChecks) -> Result<Self, Error> {
+        let Arguments { preview, vdb, six_way, overwrite, .. } = arguments;
         if !path.to_string_lossy().ends_with(".sim.json") {
             return Err(FieldError::new("recipe", path.display(), "a *.sim.json file").into());
         }
         let recipe = SimRecipe::load(path)?;
         let mut image = image_path(path);
-        if preview {
-            let name = image.file_stem().unwrap_or_default().to_string_lossy();
-            image = image.with_file_name(format!("{name}_preview.png"));
+        let mut name = image.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        if *preview {
+            name += "_preview";
+            image = image.with_file_name(format!("{name}.png"));
         }
-        let recipe = if preview { recipe.preview() } else { recipe };
-        let mut outputs = vec![image.clone(), image.with_extension("detail.png")];
-        if recipe.burns() {
-            outputs.push(image.with_extension("heat.png"));
+        let recipe = if *preview { recipe.preview() } else { recipe };
+        let output = RecordingOutput::new(path, image, recipe.burns(), six_way, overwrite.painted_png(), files)?;
+        let volumes = vdb.as_ref().map(|folder| (folder.as_path(), name));
+        let job = Self { path, recipe, output, volumes };
+        for moment in 1..=job.recipe.moment_count() {
+            job.volume_file(moment).map_or(Ok(()), |file| files.check_output("--vdb", &file, "vdb"))?;
         }
-        for output in outputs.iter().chain(&six_way.output(&image)) {
-            files.check_output("output", output, "png")?;
-            check_not_painted(output, painted)?;
-        }
-        Ok(Self { path, recipe, image, outputs, painted })
+        Ok(job)
+    }
+
+    /// Returns the VDB file of a moment, if they were asked for.
+    fn volume_file(&self, moment: u32) -> Option<PathBuf> {
+        self.volumes.as_ref().map(|(folder, name)| folder.join(format!("{name}_{moment:04}.vdb")))
     }
 
     /// Simulates, and writes the images with a line for each.
     fn run(&self, six_way: &SixWayArguments) -> Result<(), Error> {
-        let simulation = self.simulate()?;
-        let baked = with_progress(format!("haze: baking {}", self.path.display()), || simulation.bake());
-        // A PNG may have been painted during a long simulation.
-        self.outputs.iter().try_for_each(|output| check_not_painted(output, self.painted))?;
-        let images = [DynamicImage::from(baked.sprite.image), baked.sprite.detail.into()];
-        for (image, output) in images.iter().chain(&baked.heat.map(DynamicImage::from)).zip(&self.outputs) {
-            with_progress(format!("haze: writing {}", output.display()), || write_baked_png(output, image))?;
-            print_line!("{}: {}x{}", output.display(), image.width(), image.height())?;
+        let recording = self.simulate()?;
+        if let Some((folder, name)) = &self.volumes {
+            let files = folder.join(format!("{name}_####.vdb"));
+            let rate = 1.0 / self.recipe.seconds_per_frame();
+            print_line!("{}: {} frames, {rate} per second", files.display(), self.recipe.moment_count())?;
         }
-        let frames = self.recipe.sheet.frame_count();
-        six_way.bake(self.path, &self.image, frames, |medium, samples, progress| {
-            simulation.bake_six_way(medium, samples, progress)
-        })
+        self.output.bake(&recording, self.recipe.sheet, six_way)
     }
 
-    fn simulate(&self) -> Result<Simulation, Error> {
+    fn simulate(&self) -> Result<Recording, Error> {
         let path = self.path.display();
         let count = self.recipe.moment_count();
         let done = AtomicU32::new(0);
@@ -115,9 +111,13 @@ impl<'a> Job<'a> {
             format!("haze: simulating {path}, frame {frame} of {count}{left}")
         };
         with_changing_progress(what, || {
-            self.recipe.simulate(|frames| {
+            let progress = |frames| {
                 done.store(frames, Ordering::Relaxed);
                 Ok::<_, Error>(())
+            };
+            self.recipe.simulate_moments(progress, |moment| {
+                let file = self.volume_file(moment.number);
+                file.map_or(Ok(()), |file| write_file(&file, &moment.to_vdb()).map_err(Error::from))
             })
         })
     }

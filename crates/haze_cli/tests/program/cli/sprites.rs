@@ -283,3 +283,82 @@ fn wrong_simulations_are_refused_by_field() {
     let text = refusal(folder.path(), &["sprite", "simulate", "a.sim.json", "--albedo", "1"]);
     assert!(text.contains("--albedo: has no effect without --six-way"), "{text}");
 }
+
+/// Copies a file that OpenVDB has written.
+fn copy_volume(name: &str, to: &Path) {
+    let corpus = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/corpus/vdb"));
+    fs::copy(corpus.join(name), to).unwrap();
+}
+
+#[test]
+fn volumes_are_baked_to_sprites() {
+    let folder = folder();
+    copy_volume("good_simulation", &folder.path().join("one.vdb"));
+    let bake = ["sprite", "bake", "--size", "32"];
+    let text = stdout_of(
+        folder.path(),
+        &[&bake[..], &["one.vdb", "--six-way", "ash", "--samples", "2", "--up", "z"]].concat(),
+    );
+    let expected = "one.vdb: smoke from density, of which 1.328125 is 1; heat from temperature, of which 1.015625 is 1; \
+                    motion from vel\none.vdb: up is z, as --up says\none.vdb: 14x12x14 cells of a voxel\n\
+                    one.vdb: not read: color\none.png: 32x32\none.detail.png: 8x8\none.heat.png: 32x32\n\
+                    one.six_way.png: 32x64\n  to look like ash: ";
+    assert!(text.starts_with(expected), "{text}");
+    for number in [1, 2, 4, 5] {
+        copy_volume("good_half_blosc", &folder.path().join(format!("smoke_{number:04}.vdb")));
+    }
+    let output = haze(folder.path(), &[&bake[..], &["smoke_####.vdb", "--resolution", "24"]].concat());
+    let missing = "haze: smoke_####.vdb: frames are missing, and the ones before them stay: 3\n";
+    assert_eq!(stderr(&output), missing);
+    let text = String::from_utf8(output.stdout).unwrap();
+    let expected = "smoke_####.vdb: 14x8x7 cells of 2 voxels along each side\nsmoke_####.vdb: 4 of 5 frames, evenly \
+                    spaced\nsmoke.png: 64x64\nsmoke.detail.png: 16x16\n";
+    assert!(text.ends_with(expected), "{text}");
+    // A PNG that was painted since is kept.
+    image::GrayImage::new(4, 4).save(folder.path().join("smoke.png")).unwrap();
+    let text = refusal(folder.path(), &[&bake[..], &["smoke_####.vdb"]].concat());
+    assert!(text.contains("smoke.png was painted, or changed after it was baked, and is kept"), "{text}");
+}
+
+#[test]
+fn volumes_and_options_that_do_not_fit_are_refused() {
+    let folder = folder();
+    copy_volume("good_blosc", &folder.path().join("a.vdb"));
+    copy_volume("bad_level_set", &folder.path().join("b.vdb"));
+    fs::write(folder.path().join("c.vdb"), "ply").unwrap();
+    fs::write(folder.path().join("d.sprite.json"), include_str!("../../../../../tests/corpus/sprite/good_first"))
+        .unwrap();
+    for (arguments, expected) in [
+        (&["a.vdb", "--density", "soot"][..], "a.vdb: no grid named soot; expected one, or --density with the name"),
+        (&["b.vdb"], "b.vdb: density: a level set, distances to a surface; expected a fog volume: convert it"),
+        (&["c.vdb"], "c.vdb: this is no VDB file; expected one that OpenVDB has written"),
+        (&["e_##.vdb"], "e_##.vdb: no such files; expected names with digits in place of #"),
+        (&["a.vdb", "--columns", "2", "--rows", "1"], "columns and rows: 2 frames from 1; expected at most 1"),
+        (&["a.vdb", "--albedo", "0.5"], "--albedo: has no effect without --six-way"),
+        (&["d.sprite.json", "--up", "z"], "--up: has no effect on a recipe; expected a .vdb file, or the field"),
+    ] {
+        let text = refusal(folder.path(), &[&["sprite", "bake"], arguments].concat());
+        assert!(text.contains(expected), "{text}");
+    }
+    assert!(!folder.path().join("a.png").exists());
+}
+
+#[test]
+fn simulations_are_written_as_volumes_that_bake_to_the_same_sprite() {
+    let folder = folder();
+    fs::write(folder.path().join("fire.sim.json"), FIRE).unwrap();
+    let text = stdout_of(folder.path(), &["sprite", "simulate", "fire.sim.json", "--vdb", "frames"]);
+    assert!(text.starts_with("frames/fire_####.vdb: 8 frames, 20 per second\nfire.png: 128x64\n"), "{text}");
+    let bake =
+        ["sprite", "bake", "frames/fire_####.vdb", "--fps", "20", "--size", "32", "--columns", "4", "--rows", "2"];
+    let text = stdout_of(folder.path(), &bake);
+    assert!(text.contains("; heat from temperature") && text.contains("; motion from vel\n"), "{text}");
+    assert!(text.contains("up is y, as haze writes\n"), "{text}");
+    let [simulated, read] =
+        ["fire.png", "frames/fire.png"].map(|name| image::open(folder.path().join(name)).unwrap().to_rgba8());
+    assert_eq!(simulated.dimensions(), read.dimensions());
+    let apart = simulated.pixels().zip(read.pixels()).map(|(a, b)| f32::from(a.0[3].abs_diff(b.0[3]))).sum::<f32>();
+    let mean = apart / (128.0 * 64.0);
+    // The densest smoke becomes 1, and the box is a little tighter. Without smoke it would be above 60.
+    assert!(mean < 25.0, "{mean}");
+}
