@@ -29,7 +29,8 @@ fn lit(light: Light) -> Harness<'static, Window> {
     session.track(false);
     session.view.lights.follow(&session.document.preset.lights);
     session.view.lights.selected = Some(0);
-    harness.run();
+    // A busy machine renders thumbnails of systems in between, so that it does not rest.
+    harness.run_steps(6);
     harness
 }
 
