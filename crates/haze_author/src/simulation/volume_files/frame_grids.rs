@@ -178,5 +178,5 @@ fn no_density(file: &VdbFile<'_>, density: &str) -> String {
     };
     let density = one_line(density);
     let grids = list(file.grids().iter().collect());
-    format!("no grid named {density}; expected one, or --density with the name of another. Grids of the file: {grids}")
+    format!("no grid named {density}; expected one, or --grid with the name of another. Grids of the file: {grids}")
 }

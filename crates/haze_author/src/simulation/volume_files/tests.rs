@@ -141,7 +141,7 @@ fn files_that_make_no_smoke_are_refused_by_name() {
         ("bad_frustum", "density: a frustum of a camera; expected a grid in a box: resample it".into()),
         (
             "bad_without_density",
-            "no grid named density; expected one, or --density with the name of another. Grids of the file: vel \
+            "no grid named density; expected one, or --grid with the name of another. Grids of the file: vel \
              (vec3s), flame (float)"
                 .into(),
         ),

@@ -24,8 +24,8 @@ use crate::bake_job::PaintedPng;
 #[command(next_help_heading = "Options for VDB files")]
 pub struct VolumeArguments {
     /// Grid of the smoke. Default: density.
-    #[arg(long, value_name = "GRID")]
-    density: Option<String>,
+    #[arg(long, value_name = "NAME")]
+    grid: Option<String>,
     /// Axis that points up. Default: by the program that wrote the file, else y.
     #[arg(long, value_parser = choices::<UpAxis>())]
     up: Option<UpAxis>,
@@ -67,7 +67,7 @@ impl VolumeArguments {
     /// Names the first option.
     pub fn check_unused(&self) -> Result<(), Error> {
         let given = [
-            ("--density", self.density.is_some()),
+            ("--grid", self.grid.is_some()),
             ("--up", self.up.is_some()),
             ("--resolution", self.resolution.is_some()),
             ("--fps", self.fps.is_some()),
@@ -88,16 +88,16 @@ impl VolumeArguments {
 
     fn options(&self, sequence: &VolumeSequence) -> Result<VolumeOptions, FieldError> {
         let frame_loop = self.frame_loop.unwrap_or_default();
-        let grid = sequence.default_grid(frame_loop);
-        let grid = UVec2::new(self.columns.unwrap_or(grid.x), self.rows.unwrap_or(grid.y));
+        let cells = sequence.default_grid(frame_loop);
+        let cells = UVec2::new(self.columns.unwrap_or(cells.x), self.rows.unwrap_or(cells.y));
         let default = VolumeOptions::default();
         let size = self.size.unwrap_or(default.sheet.size);
-        let sheet = SheetLayout { size, columns: grid.x, rows: grid.y, ..default.sheet };
+        let sheet = SheetLayout { size, columns: cells.x, rows: cells.y, ..default.sheet };
         validate(&sheet, String::new)?;
         let extinction = self.extinction.unwrap_or(default.view.extinction);
         let flame = self.flame.unwrap_or(default.view.flame);
         Ok(VolumeOptions {
-            density: self.density.clone().unwrap_or(default.density),
+            density: self.grid.clone().unwrap_or(default.density),
             up: self.up,
             resolution: self.resolution.unwrap_or(default.resolution),
             fps: self.fps.unwrap_or(default.fps),

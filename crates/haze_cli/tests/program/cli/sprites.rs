@@ -329,7 +329,7 @@ fn volumes_and_options_that_do_not_fit_are_refused() {
     fs::write(folder.path().join("d.sprite.json"), include_str!("../../../../../tests/corpus/sprite/good_first"))
         .unwrap();
     for (arguments, expected) in [
-        (&["a.vdb", "--density", "soot"][..], "a.vdb: no grid named soot; expected one, or --density with the name"),
+        (&["a.vdb", "--grid", "soot"][..], "a.vdb: no grid named soot; expected one, or --grid with the name"),
         (&["b.vdb"], "b.vdb: density: a level set, distances to a surface; expected a fog volume: convert it"),
         (&["c.vdb"], "c.vdb: this is no VDB file; expected one that OpenVDB has written"),
         (&["e_##.vdb"], "e_##.vdb: no such files; expected names with digits in place of #"),
