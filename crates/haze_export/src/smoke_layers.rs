@@ -49,7 +49,7 @@ impl<'a> SmokeLayers<'a> {
 
     /// Light of fire alone, times opacity.
     pub async fn fire(&self) -> Result<Image<Vec4>, Error> {
-        let fire = self.backend.render_async(&self.shot.without_light()).await?;
+        let fire = self.backend.render_async(&self.dark.without_light()).await?;
         Ok(self.with_opacity(&fire, |texel, _| texel))
     }
 
@@ -96,9 +96,9 @@ impl<'a> SmokeLayers<'a> {
 
     /// The shot under one light, with the diffuse light of its settings alone.
     fn under(&self, light: Light) -> Shot {
-        let mut shot = self.shot.without_light();
+        let mut shot = self.dark.without_light();
         shot.preset.lights = vec![light];
-        for (system, own) in shot.preset.systems.iter_mut().zip(&self.shot.preset.systems) {
+        for (system, own) in shot.preset.systems.iter_mut().zip(&self.dark.preset.systems) {
             system.settings.diffuse.intensity = own.settings.diffuse.intensity;
             system.settings.shadow.strength = own.settings.shadow.strength;
             system.settings.fire.intensity = 0.0;
