@@ -28,7 +28,7 @@ pub struct GridInfo {
     pub name: String,
     /// Type of values and tree, for example `Tree_float_5_4_3`.
     pub tree: String,
-    /// Class, for example `fog volume`; empty if the file has none.
+    /// Class, for example `fog volume`; empty if the file names no class.
     pub class: String,
     /// Program that made the grid, or the file; empty if neither has one.
     pub creator: String,

@@ -109,7 +109,7 @@ impl VolumeSequence {
     /// Returns the number of frames from the first to the last, missing ones included.
     pub fn frame_count(&self) -> u32 {
         match (self.files.first(), self.files.last()) {
-            (Some((first, _)), Some((last, _))) => last - first + 1,
+            (Some((first, _)), Some((last, _))) => (last - first).saturating_add(1),
             _ => 0,
         }
     }
