@@ -14,9 +14,9 @@ use haze_core::settings::ImageRole;
 pub struct Builtin {
     /// Name without folder and extension.
     pub name: &'static str,
-    /// The PNG, or the preset's JSON.
+    /// The PNG, or the JSON of a preset or a simulation.
     pub bytes: &'static [u8],
-    /// The recipe's JSON; empty for presets and detail maps.
+    /// The recipe's JSON; empty for presets, simulations and detail maps.
     pub recipe: &'static str,
 }
 
@@ -136,45 +136,61 @@ pub const DETAILS: &[Builtin] = details!(["puff", "wisp", "billow", "ball", "cau
 /// Tiling 3D noise volumes.
 pub const NOISES: &[Builtin] = builtin!("sprites", ".noise.json", ["fbm"]);
 
-macro_rules! presets {
-    ([$($name:literal),+ $(,)?]) => {
+macro_rules! json_files {
+    ($folder:literal, $kind:literal, [$($name:literal),+ $(,)?]) => {
         &[$(Builtin {
             name: $name,
-            bytes: include_bytes!(concat!(top!(), "presets/", $name, ".json")),
+            bytes: include_bytes!(concat!(top!(), $folder, "/", $name, $kind)),
             recipe: "",
         }),+]
     };
 }
 
+/// Recipes of simulations.
+pub const SIMULATIONS: &[Builtin] = json_files!(
+    "simulations",
+    ".sim.json",
+    ["puff", "mushroom", "rising_column", "flame_lick", "burst", "ground_dust"]
+);
+
 /// Presets; the first is the default.
-pub const PRESETS: &[Builtin] = presets!([
-    "column",
-    "backlit_fog",
-    "corridor",
-    "colored_lights",
-    "fence",
-    "inside",
-    "crates",
-    "dust_storm",
-    "campfire",
-    "oil_fire",
-    "fireball",
-    "steam_vent",
-    "spell",
-    "wildfire_sky"
-]);
+pub const PRESETS: &[Builtin] = json_files!(
+    "presets",
+    ".json",
+    [
+        "column",
+        "backlit_fog",
+        "corridor",
+        "colored_lights",
+        "fence",
+        "inside",
+        "crates",
+        "dust_storm",
+        "campfire",
+        "oil_fire",
+        "fireball",
+        "steam_vent",
+        "spell",
+        "wildfire_sky"
+    ]
+);
 
 /// Layers, in the order of their shelf: presets of one system.
-pub(crate) const LAYERS: &[Builtin] = presets!([
-    "layers/smoke",
-    "layers/steam",
-    "layers/flame",
-    "layers/sparks",
-    "layers/embers",
-    "layers/ground_dust",
-    "layers/shock_ring",
-    "layers/magic_wisps"
-]);
+pub(crate) const LAYERS: &[Builtin] = json_files!(
+    "presets",
+    ".json",
+    [
+        "layers/smoke",
+        "layers/steam",
+        "layers/flame",
+        "layers/sparks",
+        "layers/embers",
+        "layers/ground_dust",
+        "layers/shock_ring",
+        "layers/magic_wisps",
+        "layers/heat_shimmer"
+    ]
+);
 
 /// Returns the built-in images for a role; empty for details and six-way maps.
 pub fn for_role(role: ImageRole) -> &'static [Builtin] {

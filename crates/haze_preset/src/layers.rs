@@ -7,8 +7,8 @@ use haze_core::emitter::Emitter;
 use haze_core::error::FieldError;
 use haze_core::glam::Vec3;
 
-use super::builtin;
 use super::preset_file::{Preset, PresetSystem};
+use super::{Camera, builtin, system_list};
 
 /// Particle system that stands at the origin, on the ground, and is about a metre large.
 #[derive(Clone, Debug)]
@@ -21,12 +21,36 @@ pub struct Layer {
     /// Description in one line.
     pub description: String,
     system: PresetSystem,
+    /// Its heat haze and its antialiasing are what the layer needs of a camera.
+    camera: Camera,
 }
 
 impl Layer {
-    /// The system with the origin moved to a position, metres.
-    #[must_use]
-    pub fn at(&self, position: Vec3) -> PresetSystem {
+    /// Adds the system to a preset, with the origin moved to a position, metres. The camera gets what the layer needs.
+    ///
+    /// # Errors
+    /// As [`system_list::add`].
+    pub fn add_at(&self, preset: &mut Preset, position: Vec3) -> Result<(), FieldError> {
+        self.add(preset, self.at(position))
+    }
+
+    /// As [`add_at`](Self::add_at), at the source of another system. The floor stays: layers that flow along it are put on the
+    /// ground below.
+    ///
+    /// # Errors
+    /// As [`system_list::add`].
+    pub fn add_at_source(&self, preset: &mut Preset, source: &Emitter) -> Result<(), FieldError> {
+        self.add(preset, self.at_source(source))
+    }
+
+    fn add(&self, preset: &mut Preset, system: PresetSystem) -> Result<(), FieldError> {
+        system_list::add(preset, system)?;
+        preset.camera.antialiasing |= self.camera.antialiasing;
+        preset.camera.heat_haze = preset.camera.heat_haze.max(self.camera.heat_haze);
+        Ok(())
+    }
+
+    fn at(&self, position: Vec3) -> PresetSystem {
         let mut system = self.system.clone();
         let emitter = &mut system.emitter;
         emitter.position += position;
@@ -36,9 +60,7 @@ impl Layer {
         system
     }
 
-    /// The system at the source of another one. The floor stays: layers that flow along it are put on the ground below.
-    #[must_use]
-    pub fn at_source(&self, source: &Emitter) -> PresetSystem {
+    fn at_source(&self, source: &Emitter) -> PresetSystem {
         let mut system = self.at(source.position.with_y(0.0));
         let emitter = &mut system.emitter;
         if emitter.floor_margin <= 0.0 {
@@ -70,9 +92,9 @@ pub fn find_layer(option: &str, name: &str) -> Result<&'static Layer, FieldError
 /// A test shows that all layers can be parsed.
 fn parse(file: &builtin::Builtin) -> Option<Layer> {
     let text = std::str::from_utf8(file.bytes).ok()?;
-    let Preset { name: title, description, systems, .. } = Preset::parse(Path::new(file.name), text).ok()?;
+    let Preset { name: title, description, systems, camera, .. } = Preset::parse(Path::new(file.name), text).ok()?;
     let name = file.name.rsplit('/').next()?;
-    Some(Layer { name, title, description, system: systems.into_iter().next()? })
+    Some(Layer { name, title, description, system: systems.into_iter().next()?, camera })
 }
 
 #[cfg(test)]
@@ -93,7 +115,24 @@ mod tests {
             let Emitter { position, size, .. } = layer.system.emitter;
             assert!(position.with_y(0.0) == Vec3::ZERO && (0.0..1.0).contains(&position.y), "{}", file.name);
             assert!((0.5..=1.0).contains(&size), "{}", file.name);
+            let Camera { antialiasing, heat_haze, .. } = layer.camera;
+            assert_eq!(layer.camera, Camera { antialiasing, heat_haze, ..Camera::default() }, "{}", file.name);
         }
+    }
+
+    #[test]
+    fn the_camera_gets_what_a_layer_needs_and_loses_nothing() {
+        let shimmer = find_layer("LAYER", "heat_shimmer").unwrap();
+        let mut preset = Preset::default();
+        preset.camera.antialiasing = true;
+        shimmer.add_at(&mut preset, Vec3::ZERO).unwrap();
+        assert!(preset.camera.heat_haze > 0.0 && preset.camera.antialiasing);
+        preset.camera.heat_haze = 1.0;
+        shimmer.add_at(&mut preset, Vec3::X).unwrap();
+        assert_eq!(preset.camera.heat_haze, 1.0);
+        let mut still = Preset::default();
+        find_layer("LAYER", "smoke").unwrap().add_at(&mut still, Vec3::ZERO).unwrap();
+        assert_eq!(still.camera, Preset::default().camera);
     }
 
     #[test]

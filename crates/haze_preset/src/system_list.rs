@@ -9,7 +9,7 @@ use super::preset_file::{MAX_SYSTEMS, Preset, PresetSystem};
 ///
 /// # Errors
 /// If the preset has [`MAX_SYSTEMS`] systems, or is not valid with one more. The preset then stays as it was.
-pub fn add(preset: &mut Preset, system: PresetSystem) -> Result<(), FieldError> {
+pub(super) fn add(preset: &mut Preset, system: PresetSystem) -> Result<(), FieldError> {
     insert(preset, preset.systems.len(), system)
 }
 
@@ -130,7 +130,7 @@ mod tests {
     /// Three systems with a track each, and a track of the camera.
     fn preset() -> Preset {
         let mut preset = Preset::load("campfire").unwrap();
-        add(&mut preset, layers::find_layer("LAYER", "smoke").unwrap().at(haze_core::glam::Vec3::X)).unwrap();
+        layers::find_layer("LAYER", "smoke").unwrap().add_at(&mut preset, haze_core::glam::Vec3::X).unwrap();
         let track = |setting: &str, value: f32| {
             let keys = vec![Keyframe { time: 0.0, value: KeyValue::Number(value), ease: Default::default() }];
             Track { setting: setting.into(), keys, ..Track::default() }
@@ -183,7 +183,7 @@ mod tests {
     #[test]
     fn no_more_systems_or_particles_are_added_than_a_preset_takes() {
         let mut full = preset();
-        let sparks = layers::find_layer("LAYER", "sparks").unwrap().at(Default::default());
+        let sparks = full.systems[1].clone();
         while full.systems.len() < MAX_SYSTEMS {
             add(&mut full, sparks.clone()).unwrap();
         }

@@ -121,10 +121,11 @@ const MAX_RECENT: usize = 12;
 impl Layout {
     /// Puts the open file first in the list.
     fn record_open_file(&mut self, session: &Session) {
-        if session.document.is_built_in() {
+        let path = session.document.path();
+        if session.document.is_built_in() || self.recent.first().is_some_and(|first| first == path) {
             return;
         }
-        let path = file_io::absolute(session.document.path());
+        let path = file_io::absolute(path);
         if self.recent.first() != Some(&path) {
             self.recent.retain(|other| *other != path);
             self.recent.insert(0, path);

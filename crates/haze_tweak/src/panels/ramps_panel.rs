@@ -4,8 +4,9 @@ use eframe::egui::{self, Color32, Mesh, Rect, Response, Sense, Stroke, Ui, Vec2}
 use glam::UVec2;
 use haze::MaterialAssets;
 use haze_core::assets::ramp::Ramp;
-use haze_core::formula::color::luminance;
+use haze_core::formula::color::{linear_from_srgb, luminance};
 use haze_core::formula::ramp::sample_ramp_2d;
+use haze_core::formula::tonemap::DisplayTransform;
 use haze_core::settings::{ImageRole, RampFilter, set_field};
 use haze_reference::SystemProbe;
 
@@ -331,7 +332,10 @@ fn two_axis_ramp(
     let ramp = two_axes.ramp;
     let ink = ui.visuals().text_color();
     let width = ui.available_width().min(PLANE_WIDTH);
-    let position = plane(ui, &display_name(named.field), width, two_axes, filter, lookups);
+    let display = if ramp == TwoAxisRamp::Fire { fire_display(ui, session, lookups.system) } else { None };
+    let shown = |light: glam::Vec3| display.as_ref().map_or(light, |display| display.shown(light));
+    let color = |at| shown(sample_ramp_2d(two_axes.image, filter, at));
+    let position = plane(ui, &display_name(named.field), width, ramp, lookups, color);
     let histograms = |axis| lookups.survey.map_or_else(Vec::new, |survey| survey.along(axis, ramp, lookups.system));
     let marks: Vec<_> = lookups.probe.into_iter().flat_map(|probe| ramp.lookups(probe)).collect();
     let samples = |axis: usize, histograms: &[Histogram]| {
@@ -356,6 +360,32 @@ fn two_axis_ramp(
         legend(ui, session, &of_lights);
     }
     position.or(edited.map(|at| RampPosition::TwoAxes(ramp, at)))
+}
+
+/// Fire as the image shows it.
+struct FireDisplay {
+    /// Factor of the fire ramp.
+    intensity: f32,
+    transform: DisplayTransform,
+}
+
+impl FireDisplay {
+    /// Color of a fire ramp, linear, as the screen shows it: where it is opaque.
+    fn shown(&self, light: glam::Vec3) -> glam::Vec3 {
+        self.transform.code(light * self.intensity).map(linear_from_srgb)
+    }
+}
+
+/// Draws the choice between the fire ramp as painted and as exposed; `None` for as painted.
+fn fire_display(ui: &mut Ui, session: &mut Session, system: usize) -> Option<FireDisplay> {
+    ui.checkbox(&mut session.view.fire_as_exposed, "As exposed").on_hover_text(
+        "The colors as they are in the image: times the intensity of the fire, with the camera's exposure and tonemap. Off: \
+         as painted.",
+    );
+    let preset = session.view.fire_as_exposed.then(|| session.preset_now())?;
+    let intensity = preset.systems.get(system)?.settings.fire.intensity;
+    let transform = DisplayTransform { exposure: preset.camera.exposure.exp2(), tonemap: preset.camera.tonemap };
+    Some(FireDisplay { intensity, transform })
 }
 
 /// Draws the title of a ramp and the choice of its image.
@@ -439,25 +469,24 @@ fn legend(ui: &mut Ui, session: &Session, histograms: &[Histogram]) {
     });
 }
 
-/// Draws a ramp with two axes, the second upwards, and the sampled positions over it.
+/// Draws a ramp with two axes, the second upwards, and the sampled positions over it. `color`: linear, at a position.
 fn plane(
     ui: &mut Ui,
     name: &str,
     width: f32,
-    two_axes: &TwoAxes<'_>,
-    filter: RampFilter,
+    ramp: TwoAxisRamp,
     lookups: &Lookups<'_>,
+    color: impl Fn(glam::Vec2) -> glam::Vec3,
 ) -> Option<RampPosition> {
-    let TwoAxes { ramp, image, .. } = *two_axes;
     let (rect, at) = space(ui, Vec2::new(width, 0.6 * width), name);
-    paint_cells(ui, rect, UVec2::splat(48), |at| sample_ramp_2d(image, filter, glam::Vec2::new(at.x, 1.0 - at.y)));
+    paint_cells(ui, rect, UVec2::splat(48), |at| color(glam::Vec2::new(at.x, 1.0 - at.y)));
     let mut mesh = Mesh::default();
     let cell = rect.size() / SIDE as f32;
     let density = lookups.survey.map_or_else(Vec::new, |survey| survey.over_both_axes(ramp, lookups.system));
     for (index, density) in density.iter().enumerate().filter(|(_, density)| **density > 0.0) {
         let column = (index % SIDE) as f32;
         let row = (index / SIDE) as f32;
-        let below = sample_ramp_2d(image, filter, (glam::Vec2::new(column, row) + 0.5) / SIDE as f32);
+        let below = color((glam::Vec2::new(column, row) + 0.5) / SIDE as f32);
         let color = if luminance(below) < MIDDLE_GRAY { SAMPLED_OVER_DARK } else { SAMPLED_OVER_LIGHT };
         let corner = rect.min + Vec2::new(column, (SIDE - 1) as f32 - row) * cell;
         // Even the rarest positions stay visible.

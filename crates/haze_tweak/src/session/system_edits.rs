@@ -16,11 +16,13 @@ impl Session {
 
     /// Adds a layer at the source of the selected system, or else at the origin, and selects it.
     pub fn add_layer(&mut self, layer: &Layer) {
-        let preset = &self.document.preset;
-        let source = preset.systems.get(self.view.system).filter(|system| !system.particle_files.is_used());
-        let system = source.map_or_else(|| layer.at(glam::Vec3::ZERO), |source| layer.at_source(&source.emitter));
-        let end = preset.systems.len();
-        self.extend_systems(end, |preset| system_list::add(preset, system));
+        let systems = &self.document.preset.systems;
+        let selected = systems.get(self.view.system).filter(|system| !system.particle_files.is_used());
+        let source = selected.map(|system| system.emitter.clone());
+        self.extend_systems(systems.len(), |preset| match source {
+            Some(source) => layer.add_at_source(preset, &source),
+            None => layer.add_at(preset, glam::Vec3::ZERO),
+        });
     }
 
     /// Copies a system with its keyframes, and selects the copy.

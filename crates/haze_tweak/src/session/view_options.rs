@@ -27,6 +27,8 @@ pub struct ViewOptions {
     pub lights: LightView,
     pub overlays: Overlays,
     pub sprite: SpriteView,
+    /// The fire ramp is shown as the camera shows it, not as painted.
+    pub fire_as_exposed: bool,
     pub tracks: TrackView,
 }
 
@@ -56,6 +58,7 @@ impl Default for ViewOptions {
             lights: LightView::default(),
             overlays: Overlays::default(),
             sprite: SpriteView::default(),
+            fire_as_exposed: false,
             tracks: TrackView::default(),
         }
     }

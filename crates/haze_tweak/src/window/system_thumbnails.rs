@@ -3,9 +3,10 @@
 use eframe::egui::{self, ColorImage, TextureHandle, TextureOptions};
 use glam::UVec2;
 use haze_core::error::Error;
+use haze_core::settings::DebugView;
 use haze_demo::shot::Shot;
 use haze_demo::tonemap_pass::tonemap;
-use haze_preset::Camera;
+use haze_preset::{Camera, SceneName};
 use image::RgbImage;
 
 use crate::platform::idle_timer::IdleTimer;
@@ -18,11 +19,14 @@ use crate::viewport::camera_moves::frame;
 /// Size of a thumbnail, pixels: twice that of the list, in points.
 const SIZE: UVec2 = UVec2::new(72, 48);
 
+/// Factor of the distance at which all smoke is in view: few particles get to the edges of its box, and they are thin there.
+const CLOSER: f32 = 0.75;
+
 /// Thumbnails of the systems.
 #[derive(Default)]
 pub struct SystemThumbnails {
     worker: Option<Worker<(usize, Option<RgbImage>)>>,
-    /// Smoke of the thumbnails; see [`without_view`].
+    /// Smoke of the thumbnails; see [`smoke_under_the_sky`].
     smoke: Option<Shot>,
     thumbnails: Vec<Thumbnail>,
     ticket: Option<Ticket>,
@@ -53,7 +57,7 @@ impl SystemThumbnails {
                 thumbnail.progress = Progress::Done;
             }
         }
-        let smoke = without_view(session);
+        let smoke = smoke_under_the_sky(session);
         let is_same = self.smoke.as_ref().is_some_and(|known| known.has_same_image(&smoke));
         let is_busy = self.worker.as_ref().is_some_and(Worker::is_busy);
         let next = self.thumbnails.iter().position(|thumbnail| thumbnail.progress == Progress::Due);
@@ -99,7 +103,9 @@ impl SystemThumbnails {
         shot.preset.camera = session.document.preset.camera;
         let mut geometry = SmokeGeometry::default();
         let bounds = geometry.at(&shot.preset, shot.caches.clone(), shot.preset.time).bounds();
-        frame(&mut shot.preset.camera, &bounds, SIZE.x as f32 / SIZE.y as f32);
+        let camera = &mut shot.preset.camera;
+        frame(camera, &bounds, SIZE.x as f32 / SIZE.y as f32);
+        camera.position = camera.target.lerp(camera.position, CLOSER);
         if self.worker.is_none() {
             let context = context.clone();
             // Without a thread, only names are shown.
@@ -114,14 +120,17 @@ impl SystemThumbnails {
     }
 }
 
-/// Returns the smoke as the preset begins, without what only changes the view of it: orbits and playback renew nothing.
-fn without_view(session: &Session) -> Shot {
+/// Returns the smoke as the preset begins, under the sky alone, without what only changes the view of it: orbits and playback
+/// renew nothing.
+fn smoke_under_the_sky(session: &Session) -> Shot {
     let mut smoke = session.animated_shot(SIZE);
     let usual = Camera::default();
     smoke.preset.time = session.document.preset.time;
     smoke.preset.camera =
         Camera { position: usual.position, target: usual.target, fov: usual.fov, ..smoke.preset.camera };
-    smoke.debug_view = haze_core::settings::DebugView::Final;
+    smoke.debug_view = DebugView::Final;
+    smoke.preset.environment.scene = SceneName::Empty;
+    smoke.backdrop.scene = None;
     smoke
 }
 

@@ -7,7 +7,7 @@ use glam::Vec3;
 use haze::FieldError;
 use haze_core::error::Error;
 use haze_preset::layers::find_layer;
-use haze_preset::{Preset, builtin, system_list};
+use haze_preset::{Preset, builtin};
 
 use haze_export::named_preset::NamedPreset;
 use haze_export::output::{FileChecks, print_line};
@@ -43,7 +43,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
         }
         None => ("PRESET", source),
     };
-    system_list::add(&mut named.preset, layer.at(arguments.at.unwrap_or_default()))?;
+    layer.add_at(&mut named.preset, arguments.at.unwrap_or_default())?;
     FileChecks::for_inputs::<&Path>([]).check_output(option, path, "json")?;
     // Fields that the file has stay, even at their defaults.
     let old = if is_link { String::new() } else { Preset::load_with_source(source)?.1 };

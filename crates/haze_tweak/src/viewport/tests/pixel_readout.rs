@@ -207,6 +207,29 @@ fn pointing_at_a_ramp_with_two_axes_highlights_the_smoke_that_samples_it() {
 }
 
 #[test]
+fn the_fire_ramp_is_shown_as_painted_or_as_exposed() {
+    let mut harness = window("oil_fire", SIZE, Theme::Dark);
+    harness.get_by_label("Ramps").click();
+    // Until the samples of the image are drawn over the ramp.
+    wait_for(&mut harness, |harness| harness.state().session.inspect.survey.is_some());
+    harness.get_by_label("Fire ramp").scroll_to_me();
+    harness.run_steps(20);
+    let ramp_brightness = |harness: &mut Harness<'_, Window>, exposure: f32| {
+        harness.state_mut().session.document.preset.camera.exposure = exposure;
+        harness.run_steps(4);
+        let rect = harness.get_by_label("Fire ramp").rect();
+        brightness(&screenshot(harness), rect)
+    };
+    let painted = ramp_brightness(&mut harness, 0.0);
+    assert_eq!(painted, ramp_brightness(&mut harness, -4.0), "as painted at any exposure");
+    harness.get_by_label("As exposed").click();
+    let dark = ramp_brightness(&mut harness, -4.0);
+    let bright = ramp_brightness(&mut harness, 0.0);
+    assert!(dark < bright - 10.0 && bright > painted + 10.0, "{painted} {dark} {bright}");
+    look(&mut harness, "fire_as_exposed");
+}
+
+#[test]
 fn the_highlight_is_painted_below_the_toolbar() {
     let mut harness = window("column", SIZE, Theme::Dark);
     // Fills the image with smoke.
