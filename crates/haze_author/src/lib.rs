@@ -3,6 +3,7 @@
 //! The library `haze` links none of this: it loads the PNG files and presets that this crate writes.
 
 pub mod backdrop;
+mod bytes;
 pub mod color_temperature;
 pub mod daylight;
 pub mod deterministic_math;

@@ -2,7 +2,7 @@
 
 use glam::{UVec2, UVec3, Vec2, Vec3};
 use haze_core::assets::image::Image;
-use haze_core::assets::sprite::Sprite;
+use haze_core::assets::sprite::{Sprite, SpriteLayout};
 use haze_core::formula::saturate;
 use image::{GrayImage, Luma};
 
@@ -16,6 +16,7 @@ use crate::sprite::detail::{bake_detail_frame, detail_size, optical_flow};
 use crate::sprite::six_way::{BakedSixWay, bake_six_way};
 
 /// Frames of gas, simulated or read from files, from which images are baked.
+#[derive(Clone, Debug)]
 pub struct Recording {
     pub(super) sheet: SheetLayout,
     pub(super) view: View,
@@ -79,9 +80,19 @@ impl Recording {
         let frame = |frame: u32| {
             let mut shape = self.bake_frame(frame).image;
             sheet.quantise(&mut shape);
-            (self.volume(frame, (sheet.size / 2).max(8)).density, shape)
+            (self.density(frame, (sheet.size / 2).max(8)), shape)
         };
         bake_six_way(sheet, medium, samples, frame, progress)
+    }
+
+    /// Returns the layout of the flipbook.
+    pub fn layout(&self) -> SpriteLayout {
+        SpriteLayout { columns: self.sheet.columns, rows: self.sheet.rows, y_down: false }
+    }
+
+    /// Returns the density of a frame on `size` by `size` by `size` / 2 voxels.
+    pub fn density(&self, frame: u32, size: u32) -> DensityVolume {
+        self.volume(frame, size).density
     }
 
     /// Returns the motion of a frame's texels to the next frame: that of the gas, refined by optical flow.

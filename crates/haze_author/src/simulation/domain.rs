@@ -5,7 +5,7 @@ use glam::Vec3;
 use super::grid::{CellBox, Grid};
 
 /// Mapping between coordinates of a grid and positions in box widths.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub struct Domain {
     pub grid: Grid,
 }

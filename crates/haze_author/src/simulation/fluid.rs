@@ -33,7 +33,7 @@ pub struct Fluid<'a> {
     pub gas: Vec<Vec4>,
     /// Cells of the fine grid that hold gas.
     pub occupied: CellBox,
-    solver: PressureSolver,
+    pub solver: PressureSolver,
     pub time: f32,
 }
 

@@ -6,6 +6,7 @@
 
 mod advection;
 mod bake;
+mod checkpoint;
 mod domain;
 mod fluid;
 mod forces;
@@ -23,6 +24,7 @@ mod volume_files;
 pub use bake::{BakedRecording, Recording};
 pub use moment::Moment;
 pub use sim_recipe::{FrameLoop, Framing, GridSize, Obstacle, Physics, RECIPE_VERSION, SimRecipe, TimeSpan, View};
+pub use simulate::Simulation;
 pub use source::{Source, SourceShape};
 pub use volume_files::{VolumeOptions, VolumeRecording, VolumeSequence};
 

@@ -20,7 +20,7 @@ const RELAXATION: f32 = 6.0 / 7.0;
 pub struct PressureSolver {
     levels: Vec<Level>,
     /// Pressure of the last step, with which the next one starts.
-    pressure: Vec<f32>,
+    pub pressure: Vec<f32>,
     direction: Vec<f32>,
     product: Vec<f32>,
 }

@@ -26,11 +26,12 @@ impl Extent {
 }
 
 /// Gas of one moment where there is any.
+#[derive(Clone, Debug)]
 pub struct RecordedFrame {
     /// Cells of the fine grid that are kept.
-    cells: CellBox,
+    pub cells: CellBox,
     /// Smoke, heat, and velocity along x and y, of every cell of the box.
-    values: Vec<[f16; 4]>,
+    pub values: Vec<[f16; 4]>,
     pub extent: Extent,
 }
 
@@ -76,7 +77,7 @@ impl RecordedFrame {
         recorded
     }
 
-    fn grid(&self) -> Grid {
+    pub fn grid(&self) -> Grid {
         Grid { size: self.cells.high + 1 - self.cells.low }
     }
 

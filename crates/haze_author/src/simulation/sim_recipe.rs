@@ -4,9 +4,10 @@ use std::path::Path;
 
 use glam::{UVec3, Vec3};
 use haze_core::assets::json;
-use haze_core::error::{AssetError, FieldError};
+use haze_core::error::{AssetError, FieldError, builtin_path};
 use haze_core::settings::choice;
-use haze_core::settings::{FieldVisitor, Fields, validate};
+use haze_core::settings::{FieldHeading, FieldVisitor, Fields, validate};
+use haze_preset::builtin::Builtin;
 
 use super::source::Source;
 use crate::sprite::bake::SheetLayout;
@@ -252,7 +253,22 @@ impl Fields for SimRecipe {
         visitor.group("sheet", &mut self.sheet);
         visitor.group("view", &mut self.view);
     }
+
+    fn headings(&self) -> &'static [FieldHeading] {
+        HEADINGS
+    }
 }
+
+/// Fields in order of display. `version` has one value and is not displayed.
+const HEADINGS: &[FieldHeading] = &[
+    ("grid", None),
+    ("sources", None),
+    ("physics", None),
+    ("obstacle", None),
+    ("time", None),
+    ("sheet", None),
+    ("view", None),
+];
 
 impl Fields for GridSize {
     fn visit(&mut self, visitor: &mut dyn FieldVisitor) {
@@ -318,6 +334,21 @@ impl SimRecipe {
     /// [`AssetError::Io`], [`AssetError::Text`] or [`AssetError::JsonField`].
     pub fn load(path: &Path) -> Result<Self, AssetError> {
         json::load(path, RECIPE_VERSION, Self::validate)
+    }
+
+    /// Returns the recipe as JSON that [`Self::load`] reads, ending with a line break.
+    pub fn to_json(&self) -> String {
+        // Numbers only, so serialization cannot fail.
+        serde_json::to_string_pretty(self).unwrap_or_default() + "\n"
+    }
+
+    /// Reads a built-in recipe, of [`SIMULATIONS`](haze_preset::builtin::SIMULATIONS).
+    ///
+    /// # Errors
+    /// [`AssetError::Text`] or [`AssetError::JsonField`]; a test shows that there are none.
+    pub fn of_built_in(builtin: &Builtin) -> Result<Self, AssetError> {
+        let text = String::from_utf8_lossy(builtin.bytes);
+        json::parse(&builtin_path(builtin.name), &text)
     }
 
     /// Checks ranges, the size of the grid and the number of sources.

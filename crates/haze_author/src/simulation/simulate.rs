@@ -10,60 +10,69 @@ use super::moment::Moment;
 use super::recorded_frame::{Extent, FrameGas, RecordedFrame};
 use super::sim_recipe::SimRecipe;
 
+/// A simulation under way: first the steps of the warm-up, then the moments of the sheet.
+pub struct Simulation<'a> {
+    pub(super) recipe: &'a SimRecipe,
+    pub(super) fluid: Fluid<'a>,
+    /// Number of finished steps of the warm-up.
+    pub(super) warm_up_steps: u32,
+    /// Finished moments.
+    pub(super) frames: Vec<RecordedFrame>,
+}
+
+impl<'a> Simulation<'a> {
+    /// Starts a simulation.
+    ///
+    /// # Errors
+    /// The first field of the recipe that is not valid.
+    pub fn new(recipe: &'a SimRecipe) -> Result<Self, FieldError> {
+        recipe.validate()?;
+        Ok(Self { recipe, fluid: Fluid::new(recipe), warm_up_steps: 0, frames: Vec::new() })
+    }
+
+    /// Returns the number of finished moments, of [`SimRecipe::moment_count`].
+    pub fn finished_moments(&self) -> u32 {
+        self.frames.len() as u32
+    }
+
+    /// Advances by a step of the warm-up, which returns `None`, or to the next moment.
+    pub fn advance(&mut self) -> Option<Moment<'_>> {
+        let step = self.recipe.seconds_per_frame();
+        // In steps of about a frame, so that sources begin and end on time.
+        let warm_up = self.recipe.time.warm_up;
+        let steps = (warm_up / step).ceil().min(1.0e4) as u32;
+        if self.warm_up_steps < steps {
+            self.fluid.advance(warm_up / steps as f32);
+            self.warm_up_steps += 1;
+            return None;
+        }
+        self.fluid.advance(step);
+        self.frames.push(RecordedFrame::new(&self.fluid.frame_gas(), &self.recipe.view));
+        Some(Moment { fluid: &self.fluid, number: self.finished_moments(), has_heat: self.recipe.burns() })
+    }
+
+    /// Returns the finished moments, framed.
+    pub fn into_recording(self) -> Recording {
+        let Self { recipe, fluid, frames, .. } = self;
+        let extent = frames.iter().map(|frame| frame.extent).fold(Extent::EMPTY, Extent::union);
+        Recording {
+            sheet: recipe.sheet,
+            view: recipe.view.clone(),
+            frames,
+            seconds_per_frame: recipe.seconds_per_frame(),
+            has_velocity: true,
+            has_heat: recipe.burns(),
+            fine: fluid.fine,
+            window: Window::new(&recipe.view, fluid.domain, recipe.grid.ground, extent),
+        }
+    }
+}
+
 impl SimRecipe {
     /// Returns the number of moments that are simulated for the sheet.
     pub fn moment_count(&self) -> u32 {
         let frames = self.sheet.frame_count();
         frames + self.time.frame_loop.blended_frames(frames, self.time.blend)
-    }
-
-    /// Simulates all frames. `progress` is called with the number of finished moments, of [`Self::moment_count`]; an
-    /// error from it cancels the simulation.
-    ///
-    /// # Errors
-    /// The first field of the recipe that is not valid, or the error of `progress`.
-    pub fn simulate<E: From<FieldError>>(&self, progress: impl Fn(u32) -> Result<(), E>) -> Result<Recording, E> {
-        self.simulate_moments(progress, |_| Ok(()))
-    }
-
-    /// Simulates all frames, as [`Self::simulate`], and calls `each` with every moment; an error from it cancels the
-    /// simulation.
-    ///
-    /// # Errors
-    /// As [`Self::simulate`], and those of `each`.
-    pub fn simulate_moments<E: From<FieldError>>(
-        &self,
-        progress: impl Fn(u32) -> Result<(), E>,
-        mut each: impl FnMut(&Moment<'_>) -> Result<(), E>,
-    ) -> Result<Recording, E> {
-        self.validate()?;
-        let mut fluid = Fluid::new(self);
-        let step = self.seconds_per_frame();
-        progress(0)?;
-        // The warm-up in steps of about a frame, so that sources begin and end on time.
-        let steps = (self.time.warm_up / step).ceil().min(1.0e4) as u32;
-        for _ in 0..steps {
-            fluid.advance(self.time.warm_up / steps as f32);
-            progress(0)?;
-        }
-        let mut frames = Vec::new();
-        for number in 1..=self.moment_count() {
-            fluid.advance(step);
-            frames.push(RecordedFrame::new(&fluid.frame_gas(), &self.view));
-            each(&Moment { fluid: &fluid, number, has_heat: self.burns() })?;
-            progress(number)?;
-        }
-        let extent = frames.iter().map(|frame| frame.extent).fold(Extent::EMPTY, Extent::union);
-        Ok(Recording {
-            sheet: self.sheet,
-            view: self.view.clone(),
-            frames,
-            seconds_per_frame: step,
-            has_velocity: true,
-            has_heat: self.burns(),
-            fine: fluid.fine,
-            window: Window::new(&self.view, fluid.domain, self.grid.ground, extent),
-        })
     }
 
     /// Time between frames, seconds.

@@ -4,7 +4,6 @@ use glam::{IVec2, UVec2, UVec3, Vec2, Vec3, Vec4};
 use haze_core::assets::json;
 use haze_core::assets::noise::{pcg3d, unit};
 use haze_core::assets::sprite::Sprite;
-use haze_core::error::FieldError;
 use haze_core::formula::sprite::MOTION_RANGE;
 use image::RgbaImage;
 
@@ -32,7 +31,14 @@ fn small() -> SimRecipe {
 }
 
 fn run(recipe: &SimRecipe) -> BakedRecording {
-    recipe.simulate(|_| Ok::<_, FieldError>(())).unwrap().bake()
+    finish(Simulation::new(recipe).unwrap()).bake()
+}
+
+fn finish(mut simulation: Simulation<'_>) -> Recording {
+    while simulation.finished_moments() < simulation.recipe.moment_count() {
+        simulation.advance();
+    }
+    simulation.into_recording()
 }
 
 /// Sum of all smoke, and the mean height of it.
@@ -256,17 +262,56 @@ fn errors_name_the_field() {
 
 #[test]
 fn shipped_recipes_are_valid() {
-    let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../simulations"));
-    for name in ["burst", "flame_lick", "ground_dust", "mushroom", "puff", "rising_column"] {
-        let recipe = SimRecipe::load(&folder.join(name).with_extension("sim.json")).unwrap();
+    for builtin in haze_preset::builtin::SIMULATIONS {
+        let recipe = SimRecipe::of_built_in(builtin).unwrap();
+        recipe.validate().unwrap();
         recipe.preview().validate().unwrap();
-        assert_eq!(recipe.burns(), ["burst", "flame_lick"].contains(&name), "{name}");
+        assert_eq!(recipe.burns(), ["burst", "flame_lick"].contains(&builtin.name), "{}", builtin.name);
+        let written: SimRecipe = json::parse(Path::new("a.sim.json"), &recipe.to_json()).unwrap();
+        assert_eq!(written, recipe);
     }
 }
 
 #[test]
-fn an_error_of_the_progress_cancels_the_simulation() {
-    let stop = || FieldError::new("", "", "");
-    let cancelled = small().simulate(|done| if done < 2 { Ok(()) } else { Err(stop()) });
-    assert!(cancelled.is_err());
+fn a_simulation_goes_on_from_any_moment_to_the_same_images() {
+    let mut recipe = small();
+    recipe.sources[0].fuel = 0.5;
+    recipe.grid.ground = true;
+    let whole = run(&recipe);
+    // In the warm-up, before the first moment, after one, and after the last.
+    let mut simulation = Simulation::new(&recipe).unwrap();
+    for finished in [0, 0, 1, 2, 3, 4] {
+        let checkpoint = simulation.to_checkpoint();
+        let resumed = Simulation::resume(&recipe, &checkpoint).unwrap().unwrap();
+        assert_eq!(resumed.finished_moments(), finished);
+        let baked = finish(resumed).bake();
+        assert!(baked.sprite.image == whole.sprite.image && baked.sprite.detail == whole.sprite.detail, "{finished}");
+        assert!(baked.heat == whole.heat && baked.heat.is_some());
+        simulation.advance();
+    }
+}
+
+#[test]
+fn a_checkpoint_of_another_recipe_is_none_and_a_damaged_one_is_refused() {
+    let recipe = small();
+    let mut simulation = Simulation::new(&recipe).unwrap();
+    simulation.advance();
+    simulation.advance();
+    let checkpoint = simulation.to_checkpoint();
+    let mut other = recipe.clone();
+    other.physics.buoyancy = 3.0;
+    assert!(Simulation::resume(&other, &checkpoint).unwrap().is_none());
+    let said = |file: &[u8]| Simulation::resume(&recipe, file).map(drop).unwrap_err();
+    assert_eq!(said(b"haze"), "no checkpoint of this version of haze");
+    for cut in (18..checkpoint.len()).step_by(checkpoint.len() / 97) {
+        assert!(!said(&checkpoint[..cut]).is_empty(), "{cut}");
+    }
+    // No byte makes it panic.
+    for at in (0..checkpoint.len()).step_by(checkpoint.len() / 97) {
+        let mut damaged = checkpoint.clone();
+        damaged[at] ^= 0x55;
+        if let Ok(Some(mut resumed)) = Simulation::resume(&recipe, &damaged) {
+            resumed.advance();
+        }
+    }
 }

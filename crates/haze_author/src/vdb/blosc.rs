@@ -2,7 +2,7 @@
 //!
 //! Source: <https://github.com/Blosc/c-blosc>, `README_HEADER.rst` and `blosc/blosc.c`.
 
-use super::bytes::{Bytes, inflate};
+use crate::bytes::{Bytes, inflate};
 
 /// Bits of the flags.
 const SHUFFLED: u8 = 1;

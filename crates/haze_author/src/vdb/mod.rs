@@ -7,7 +7,6 @@
 //! Source: <https://github.com/AcademySoftwareFoundation/openvdb>, `openvdb/openvdb/io/` and `tree/`.
 
 mod blosc;
-mod bytes;
 mod sparse_grid;
 mod tree_reader;
 mod values;

@@ -2,9 +2,9 @@
 
 use glam::IVec3;
 
-use super::bytes::Bytes;
 use super::sparse_grid::{GridTransform, SparseGrid, is_same, voxel_of};
 use super::values::{ValueFormat, is_set};
+use crate::bytes::Bytes;
 
 /// Most numbers of all leaves and cubes of a grid: 1 GiB.
 pub const MAX_NUMBERS: usize = 1 << 28;

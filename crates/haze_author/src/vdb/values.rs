@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use half::f16;
 
 use super::blosc;
-use super::bytes::{Bytes, inflate};
+use crate::bytes::{Bytes, inflate};
 
 /// Bits of a grid's compression.
 pub const ZIP: u32 = 1;

@@ -3,10 +3,10 @@
 use glam::DVec3;
 use haze_core::error::one_line;
 
-use super::bytes::Bytes;
 use super::sparse_grid::{GridTransform, SparseGrid};
 use super::tree_reader::TreeReader;
 use super::values::{ACTIVE_MASK, BLOSC, Number, ValueFormat, ZIP};
+use crate::bytes::Bytes;
 
 /// First bytes of a file, and of the library's number of the same name.
 pub const MAGIC: [u8; 8] = *b" BDV\0\0\0\0";

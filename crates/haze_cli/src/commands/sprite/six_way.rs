@@ -8,6 +8,7 @@ use haze::FieldError;
 use haze_author::path_trace::Medium;
 use haze_author::sprite::six_way::BakedSixWay;
 use haze_core::error::Error;
+use haze_export::interrupt;
 use haze_export::options::whole_number;
 use haze_export::output::{FileChecks, print_line};
 use haze_export::progress::with_changing_progress;
@@ -112,7 +113,7 @@ impl SixWayArguments {
         let baked = with_changing_progress(what, || {
             bake(&medium, self.samples, &|frame, sample| {
                 done.iter().zip([frame, sample]).for_each(|(count, now)| count.store(now, Ordering::Relaxed));
-                Ok(())
+                interrupt::check(&path.display().to_string(), "the six-way maps are not written")
             })
         })?;
         let BakedSixWay { image: maps, intensity, color, anisotropy } = baked;

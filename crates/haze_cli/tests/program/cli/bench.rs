@@ -161,7 +161,7 @@ fn the_page_fits_browser_windows_of_any_width() {
 
 /// Waits until a process handles SIGHUP, SIGINT and SIGTERM, as a run does from its first measurement on.
 #[cfg(target_os = "linux")]
-fn wait_for_handlers(child: &Child) {
+pub fn wait_for_handlers(child: &Child) {
     let is_handled = |line: &str| {
         let mask = line.strip_prefix("SigCgt:").and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok());
         mask.is_some_and(|mask| [1, 2, 15].iter().all(|number| mask >> (number - 1) & 1 == 1))

@@ -2,6 +2,7 @@
 
 use std::fs;
 use std::path::Path;
+use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
 use tempfile::TempDir;
@@ -267,6 +268,50 @@ fn simulations_are_baked_to_sprites() {
     assert_eq!(image::open(folder.path().join("fire.heat.png")).unwrap().width(), 4);
     stdout_of(folder.path(), &[&simulate[..], &["--overwrite"]].concat());
     assert_eq!(image::open(folder.path().join("fire.heat.png")).unwrap().width(), 128);
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn a_stopped_simulation_goes_on_where_it_was() {
+    let folder = folder();
+    // Some seconds.
+    let long = FIRE.replace("\"columns\": 4, \"rows\": 2", "\"columns\": 12, \"rows\": 12");
+    assert_ne!(long, FIRE);
+    for name in ["whole", "fire"] {
+        fs::write(folder.path().join(format!("{name}.sim.json")), &long).unwrap();
+    }
+    stdout_of(folder.path(), &["sprite", "simulate", "whole.sim.json"]);
+    let child = Command::new(env!("CARGO_BIN_EXE_haze"))
+        .args(["sprite", "simulate", "fire.sim.json"])
+        .current_dir(folder.path())
+        .stdout(Stdio::null())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    super::bench::wait_for_handlers(&child);
+    assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
+    let output = child.wait_with_output().unwrap();
+    let said = stderr(&output);
+    assert!(!output.status.success() && said.contains("of 144 frames are in fire.checkpoint"), "{said}");
+    assert!(!folder.path().join("fire.png").exists());
+    // One of another recipe is left, and said.
+    fs::write(folder.path().join("fire.sim.json"), FIRE).unwrap();
+    fs::copy(folder.path().join("fire.checkpoint"), folder.path().join("kept")).unwrap();
+    let text = stdout_of(folder.path(), &["sprite", "simulate", "fire.sim.json"]);
+    assert!(text.starts_with("fire.checkpoint: of another recipe; starts anew\nfire.png"), "{text}");
+    fs::write(folder.path().join("fire.sim.json"), &long).unwrap();
+    fs::rename(folder.path().join("kept"), folder.path().join("fire.checkpoint")).unwrap();
+    let text = stdout_of(folder.path(), &["sprite", "simulate", "fire.sim.json"]);
+    assert!(text.starts_with("fire.checkpoint: goes on after ") && text.contains("fire.heat.png"), "{text}");
+    assert!(!folder.path().join("fire.checkpoint").exists());
+    for ending in ["png", "detail.png", "heat.png"] {
+        let [whole, fire] =
+            ["whole", "fire"].map(|name| fs::read(folder.path().join(format!("{name}.{ending}"))).unwrap());
+        assert!(whole == fire, "{ending}");
+    }
+    fs::write(folder.path().join("fire.checkpoint"), "torn").unwrap();
+    let said = refusal(folder.path(), &["sprite", "simulate", "fire.sim.json"]);
+    assert!(said.contains("checkpoint: fire.checkpoint: no checkpoint of this version of haze; expected"), "{said}");
 }
 
 #[test]
