@@ -6,6 +6,7 @@ use haze_core::assets::memory_files;
 use js_sys::{Array, Uint8Array};
 use wasm_bindgen::prelude::*;
 
+use super::document::simulation_edit::SimulateSprite;
 use super::document::sprite_edits::sprite_source::{BakeSprite, ReadSprite};
 use super::platform::portable_job::PortableJob;
 use super::viewport::path_traced_puff::TracePuff;
@@ -21,6 +22,7 @@ pub fn run_job(name: &str, job: &str, files: Array, progress: &js_sys::Function)
     let run = match name {
         BakeSprite::NAME => run::<BakeSprite>,
         ReadSprite::NAME => run::<ReadSprite>,
+        SimulateSprite::NAME => run::<SimulateSprite>,
         TracePuff::NAME => run::<TracePuff>,
         _ => return Err(JsValue::from_str(&format!("unknown job: {name}"))),
     };

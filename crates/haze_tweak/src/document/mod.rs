@@ -13,6 +13,7 @@ pub mod preset_diff;
 pub mod ramp_edits;
 pub mod recipe_steps;
 pub mod recovery;
+pub mod simulation_edit;
 pub mod sprite_edits;
 
 use std::path::{Path, PathBuf};

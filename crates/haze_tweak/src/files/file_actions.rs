@@ -127,7 +127,7 @@ impl FileActions {
         if let Some(kind) = session.backdrop_request.take() {
             self.ask(Purpose::Backdrop(kind), suggested(session));
         }
-        let is_baking = session.sprites.is_baking();
+        let is_baking = session.sprites.is_baking() || session.simulation.is_baking();
         let is_asked_to_close = context.input(|input| input.viewport().close_requested());
         if self.may_close || self.closes_after_baking && !is_baking {
             self.closes_after_baking = false;

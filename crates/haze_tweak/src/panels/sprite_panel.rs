@@ -1,9 +1,12 @@
 //! Sprite tab: the sprite of a system as it is lit, findings of its check, and its recipe.
 
 mod flipbook_view;
+mod simulation_recipe;
 mod sprite_recipe;
 
 use eframe::egui::{self, Ui};
+
+use haze_preset::MaterialSources;
 
 use crate::session::Session;
 use crate::session::messages::truncate_middle;
@@ -34,11 +37,20 @@ pub fn panel(ui: &mut Ui, session: &mut Session) {
     if ui.available_height() < SMALL {
         area.show(ui, |ui| {
             top(ui, session);
-            sprite_recipe::panel(ui, session, &names);
+            recipe(ui, session, index, &names);
         });
         return;
     }
     // The image does not scroll, so that it stays visible while sliders far below are moved.
     top(ui, session);
-    area.show(ui, |ui| sprite_recipe::panel(ui, session, &names));
+    area.show(ui, |ui| recipe(ui, session, index, &names));
+}
+
+/// Draws the recipe of the sprite, or of the simulation that is to replace it.
+fn recipe(ui: &mut Ui, session: &mut Session, system: usize, names: &MaterialSources) {
+    if session.simulation.of_system(system).is_some() {
+        simulation_recipe::panel(ui, session, system);
+    } else {
+        sprite_recipe::panel(ui, session, names);
+    }
 }

@@ -44,6 +44,7 @@ use crate::document::loaded_materials::LoadedMaterials;
 use crate::document::loaded_particles::LoadedParticles;
 use crate::document::preset_diff::{changed_fields, copy_field};
 use crate::document::ramp_edits::RampEdits;
+use crate::document::simulation_edit::SimulationEdit;
 use crate::document::sprite_edits::SpriteEdits;
 use crate::platform::IS_PAGE;
 use crate::platform::asset_loading::{self, LoadedAssets};
@@ -107,6 +108,8 @@ pub struct Session {
     pub ramps: RampEdits,
     /// Sprites whose recipes are edited.
     pub sprites: SpriteEdits,
+    /// Simulation that becomes a sprite.
+    pub simulation: SimulationEdit,
     /// Shaders of a watched folder, as last compiled without error; `None` means the built-in ones.
     pub shaders: Option<Sources>,
     /// Another program has written the file while there are unsaved changes. The user has to choose a version.
@@ -189,6 +192,7 @@ impl Session {
             backdrop_request: None,
             ramps: RampEdits::default(),
             sprites: SpriteEdits::default(),
+            simulation: SimulationEdit::default(),
             shaders: None,
             is_changed_on_disk: false,
             copy_request: None,
@@ -252,6 +256,7 @@ impl Session {
         let mut materials = self.loaded_materials.of(&self.document.preset);
         self.ramps.apply(&self.document.preset, &mut materials);
         self.sprites.apply(&self.document.preset, &mut materials);
+        self.simulation.apply(&mut materials);
         materials
     }
 
@@ -284,10 +289,11 @@ impl Session {
         }
     }
 
-    /// Forgets copies that wait until the preset is saved.
+    /// Forgets copies, and a simulation, that wait until the preset is saved.
     pub fn cancel_copies(&mut self) {
         self.ramps.cancel_copy();
         self.sprites.cancel_copy();
+        self.simulation.cancel_bake();
     }
 
     /// Bakes edited ramps, and writes them unless a control is held.
@@ -314,6 +320,16 @@ impl Session {
         }
         if let Err(error) = done {
             self.messages.error("sprite", error);
+        }
+    }
+
+    /// Simulates an edited recipe at a low resolution, and writes the full one.
+    fn follow_simulation(&mut self, is_held: bool) {
+        let wake = self.repaint.clone();
+        match self.simulation.advance(&mut self.document, is_held, move || wake.call()) {
+            Ok(Some(name)) => self.messages.info("simulation", format!("Wrote {name}, which this system now uses")),
+            Ok(None) => {}
+            Err(error) => self.messages.error("simulation", error),
         }
     }
 
@@ -359,6 +375,7 @@ impl Session {
         let is_held = is_held || self.view.tab == Tab::Ramps && self.ramps.is_editing();
         self.follow_ramps(is_held);
         self.follow_sprites(is_held);
+        self.follow_simulation(is_held);
         self.document.track(is_held);
         let saved = self.saved();
         let preset = &self.document.preset;
@@ -483,7 +500,8 @@ impl Session {
         self.copy_request = None;
         self.looks.close();
         self.sprites.forget();
-        let stale = ["preset", "ramp", "sprite", "images", "caches", "backdrop", "file"];
+        self.simulation.close();
+        let stale = ["preset", "ramp", "sprite", "simulation", "images", "caches", "backdrop", "file"];
         stale.into_iter().for_each(|about| self.messages.clear(about));
         self.document = document;
     }

@@ -345,8 +345,10 @@ impl Window {
         panels::export_dialog::panel(ui, &mut self.export_job, &mut self.session);
         self.ask_export();
         panels::copy_question::panel(ui, &mut self.session);
-        let cannot_save = [&mut self.session.ramps.needs_saved_preset, &mut self.session.sprites.needs_saved_preset]
-            .map(std::mem::take);
+        let Session { ramps, sprites, simulation, .. } = &mut self.session;
+        let waiting =
+            [&mut ramps.needs_saved_preset, &mut sprites.needs_saved_preset, &mut simulation.needs_saved_preset];
+        let cannot_save = waiting.map(std::mem::take);
         if cannot_save.contains(&true) {
             self.file_actions.save_as(&self.session);
         }

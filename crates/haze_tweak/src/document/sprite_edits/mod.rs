@@ -32,7 +32,7 @@ pub struct SpriteEdits {
 
 /// Sprite with its recipe and its bakes.
 pub struct EditedSprite {
-    image: PathBuf,
+    pub image: PathBuf,
     /// Layout that the preset has for it.
     layout: SpriteLayout,
     pub source: SpriteOrigin,

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use haze::FieldError;
+use haze_author::simulation::SimRecipe;
 use haze_author::sprite::bake::{BakedSprite, SpriteRecipe};
 use haze_author::sprite::lint::lint_sprite;
 use haze_core::assets::image::decode_png;
@@ -29,6 +30,8 @@ pub enum SpriteOrigin {
     Recipe(SpriteRecipe),
     /// The recipe beside it makes another image: another program has changed one of the two.
     Apart(SpriteRecipe),
+    /// Made from a simulation beside it.
+    Simulated(Box<SimRecipe>),
     /// There is no recipe beside it.
     Painted,
     /// Unreadable.
@@ -51,6 +54,11 @@ pub struct SpriteState {
 /// Returns `mine.sprite.json` for `mine.png`.
 pub fn recipe_of(image: &Path) -> PathBuf {
     image.with_extension("sprite.json")
+}
+
+/// Returns `mine.sim.json` for `mine.png`.
+pub fn simulation_of(image: &Path) -> PathBuf {
+    image.with_extension("sim.json")
 }
 
 /// Returns `mine.detail.png` for `mine.png`.
@@ -76,7 +84,7 @@ impl PortableJob for ReadSprite {
     type Output = SpriteState;
 
     fn reads(&self) -> Vec<PathBuf> {
-        vec![self.image.clone(), recipe_of(&self.image)]
+        vec![self.image.clone(), recipe_of(&self.image), simulation_of(&self.image)]
     }
 
     fn run(self, _: &dyn Fn(u32) -> bool) -> SpriteState {
@@ -106,7 +114,10 @@ fn file(image: &Path, layout: SpriteLayout) -> Found {
     };
     let recipe = recipe_of(image);
     let (source, layout, broken) = match file_io::exists(&recipe).then(|| sprite_recipe(&recipe)) {
-        None => (SpriteOrigin::Painted, layout, None),
+        None => {
+            let (source, broken) = simulated(image);
+            (source, layout, broken)
+        }
         Some(Err(error)) => (SpriteOrigin::Painted, layout, Some(error.to_string())),
         Some(Ok(recipe)) if makes(&recipe, &sheet) => {
             let layout = recipe.layout();
@@ -115,6 +126,18 @@ fn file(image: &Path, layout: SpriteLayout) -> Found {
         Some(Ok(recipe)) => (SpriteOrigin::Apart(recipe), layout, None),
     };
     (source, findings(image, &sheet, layout), broken)
+}
+
+/// Returns the simulation beside an image, or the error in its file.
+fn simulated(image: &Path) -> (SpriteOrigin, Option<String>) {
+    let recipe = simulation_of(image);
+    if !file_io::exists(&recipe) {
+        return (SpriteOrigin::Painted, None);
+    }
+    match SimRecipe::load(&recipe) {
+        Ok(recipe) => (SpriteOrigin::Simulated(Box::new(recipe)), None),
+        Err(error) => (SpriteOrigin::Painted, Some(error.to_string())),
+    }
 }
 
 /// Returns true if a recipe makes a sheet.

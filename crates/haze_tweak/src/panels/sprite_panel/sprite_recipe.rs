@@ -11,6 +11,8 @@ use haze_author::sprite::bake::SpriteRecipe;
 use haze_core::settings::{FieldVisitor, Fields};
 use haze_preset::{MaterialSources, builtin};
 
+use super::simulation_recipe;
+use crate::document::simulation_edit::SimulationSource;
 use crate::document::sprite_edits::set_recipe;
 use crate::document::sprite_edits::sprite_source::SpriteOrigin;
 use crate::panels::rows::setting_rows::{self, RowContext};
@@ -41,6 +43,7 @@ pub fn panel(ui: &mut Ui, session: &mut Session, names: &MaterialSources) {
     let file = known.recipe_file();
     let file = truncate_middle(&file.file_name().unwrap_or_default().to_string_lossy(), 60);
     let source = known.source.clone();
+    let image = known.image.clone();
     let is_broken = known.broken.is_some();
     let progress = known.full.as_ref().map(|order| (order.frames(), order.recipe.frame_count()));
     let name = &names.sprite;
@@ -50,10 +53,19 @@ pub fn panel(ui: &mut Ui, session: &mut Session, names: &MaterialSources) {
         }
         SpriteOrigin::BuiltIn(recipe) => {
             let about = "Built-in sprites cannot be changed. Makes an editable copy; asks first.";
-            if ui.button("Make my own…").on_hover_text(about).clicked() {
-                request_copy(session, name);
-            }
-            rows(ui, session, name, &recipe, Some("a built-in sprite cannot be changed; make your own copy first"));
+            ui.horizontal(|ui| {
+                if ui.button("Make my own…").on_hover_text(about).clicked() {
+                    request_copy(session, name);
+                }
+                simulation_recipe::menu(ui, session);
+            });
+            sprite_rows(
+                ui,
+                session,
+                name,
+                &recipe,
+                Some("a built-in sprite cannot be changed; make your own copy first"),
+            );
         }
         SpriteOrigin::Recipe(recipe) => {
             let recipe = session.document.recipes.sprites.get(name).unwrap_or(&recipe).clone();
@@ -68,13 +80,20 @@ pub fn panel(ui: &mut Ui, session: &mut Session, names: &MaterialSources) {
                     ui.weak("Saved automatically").on_hover_text(WRITTEN);
                 }
             }
-            rows(ui, session, name, &recipe, is_broken.then_some("the recipe file has an error; fix it first"));
+            sprite_rows(ui, session, name, &recipe, is_broken.then_some("the recipe file has an error; fix it first"));
         }
         SpriteOrigin::Apart(_) => {
             ui.label(format!("The image does not match {file}: another program changed one of them."));
             let about = "Replaces the image by the one that the recipe makes";
             if ui.button("Bake recipe").on_hover_text(about).clicked() {
                 known.adopt();
+            }
+            templates(ui, session);
+        }
+        SpriteOrigin::Simulated(recipe) => {
+            let about = "Changes the simulation, with a preview that plays; the images are replaced when it is baked";
+            if ui.button("Edit simulation").on_hover_text(about).clicked() {
+                session.simulation.open(session.view.system, SimulationSource::Image(image), *recipe);
             }
             templates(ui, session);
         }
@@ -93,27 +112,45 @@ fn request_copy(session: &mut Session, name: &str) {
     session.copy_request = Some(CopyRequest { system, name: name.into(), image: CopiedImage::Sprite });
 }
 
-/// Menu of built-in sprites to copy.
+/// Menus of built-in sprites to copy, and of simulations.
 fn templates(ui: &mut Ui, session: &mut Session) {
-    let menu = ui.menu_button("New from template", |ui| {
-        for template in builtin::SPRITES {
-            if ui.button(template.name).clicked() {
-                request_copy(session, template.name);
-                ui.close();
+    ui.horizontal(|ui| {
+        let menu = ui.menu_button("New from template", |ui| {
+            for template in builtin::SPRITES {
+                if ui.button(template.name).clicked() {
+                    request_copy(session, template.name);
+                    ui.close();
+                }
             }
-        }
+        });
+        menu.response.on_hover_text("Replaces this sprite by an editable copy of a built-in one");
+        simulation_recipe::menu(ui, session);
     });
-    menu.response.on_hover_text("Replaces this sprite by an editable copy of a built-in one");
 }
 
-/// Draws the fields of a recipe by its table. `locked`: the reason why none can be changed.
-fn rows(ui: &mut Ui, session: &mut Session, name: &str, recipe: &SpriteRecipe, locked: Option<&'static str>) {
+/// Draws the recipe of a sprite, and takes the changes.
+fn sprite_rows(ui: &mut Ui, session: &mut Session, name: &str, recipe: &SpriteRecipe, locked: Option<&'static str>) {
+    let edited = rows(ui, session, &TOOLTIPS, recipe, locked);
+    if edited != *recipe {
+        set_recipe(&mut session.document, name, edited);
+        session.messages.clear("sprite");
+    }
+}
+
+/// Draws the fields of a recipe by its table, and returns it as edited. `locked`: the reason why none can be changed.
+pub fn rows<R: Fields + Clone>(
+    ui: &mut Ui,
+    session: &mut Session,
+    tooltips: &Tooltips,
+    recipe: &R,
+    locked: Option<&'static str>,
+) -> R {
     let mut edited = recipe.clone();
     let reason_without_effect = |_: &str| locked;
     let unchanged = HashSet::new();
     let requests = Vec::new();
     let mut context = RowContext {
-        tooltips: &TOOLTIPS,
+        tooltips,
         thumbnails: &session.thumbnails,
         changed: &unchanged,
         second: None,
@@ -128,13 +165,10 @@ fn rows(ui: &mut Ui, session: &mut Session, name: &str, recipe: &SpriteRecipe, l
     let refused = context.refused;
     // Ranges may depend on the values that were changed.
     edited.visit(&mut RangeClamp);
-    if edited != *recipe {
-        set_recipe(&mut session.document, name, edited);
-        session.messages.clear("sprite");
-    }
     if let Some(refused) = refused {
         session.messages.error("typed", refused);
     }
+    edited
 }
 
 /// Clamps numbers to their ranges.
