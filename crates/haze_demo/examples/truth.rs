@@ -1,6 +1,6 @@
 //! Writes clouds of smoke for a path tracer, and how every lighting model draws them; `scripts/truth` compares the two.
 //!
-//! `truth FOLDER SIZE SAMPLES MEDIUM…` writes to the folder:
+//! `truth FOLDER SIZE SAMPLES [--sheets] MEDIUM…` writes to the folder, of clouds or of sheets of simulated smoke:
 //! - `MEDIUM_CLOUD.vol`: densities, for Mitsuba,
 //! - `MEDIUM_CLOUD_MODEL.f32`: the drawn cloud as little-endian floats, row by row from the top: premultiplied linear
 //!   RGB under each light, then the coverage; the model `path_trace` is haze's own path tracer,
@@ -16,7 +16,8 @@ use std::path::Path;
 use glam::{UVec2, Vec3};
 use haze::builtin;
 use haze_author::path_trace::{MEDIA, Medium, PathTrace};
-use haze_author::sprite::bake::SpriteRecipe;
+use haze_author::simulation::{SimRecipe, Simulation};
+use haze_author::sprite::bake::{SheetLayout, SpriteRecipe};
 use haze_core::assets::image::Image;
 use haze_core::assets::ramp::Ramp;
 use haze_core::formula::six_way::henyey_greenstein;
@@ -43,6 +44,10 @@ const CLOUDS: [(&str, CloudShape, u32); 8] = [
 /// Number of puffs in `ball_of_eight`.
 const FEW: usize = 8;
 
+/// Simulations of sheets, and frames of each.
+const SHEETS: [&str; 3] = ["puff", "mushroom", "ground_dust"];
+const SHEET_FRAMES: u32 = 3;
+
 /// Image size of the timed frame.
 const FRAME: UVec2 = UVec2::new(1280, 720);
 /// Number of timed frames of each model.
@@ -60,7 +65,11 @@ type Model = (&'static str, PuffMaterial);
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<_> = std::env::args().skip(1).collect();
     let [folder, size, samples, media @ ..] = &arguments[..] else {
-        return Err("usage: truth FOLDER SIZE SAMPLES MEDIUM…".into());
+        return Err("usage: truth FOLDER SIZE SAMPLES [--sheets] MEDIUM…".into());
+    };
+    let (has_sheets, media) = match media {
+        [first, media @ ..] if first == "--sheets" => (true, media),
+        _ => (false, media),
     };
     let folder = Path::new(folder);
     let size = size.parse()?;
@@ -74,32 +83,35 @@ fn main() -> Result<(), Box<dyn Error>> {
             let names: Vec<_> = MEDIA.iter().map(|medium| medium.name).collect();
             format!("{name}: no such medium; expected one of {}", names.join(", "))
         })?;
-        let recipe = SpriteRecipe::of_builtin(builtin::find(builtin::SPRITES, "billow").ok_or("no sprite billow")?)?;
-        let kind = PuffKind::new(&SpriteRecipe { seed: SPRITE_SEED, ..recipe }, &medium.medium, path_trace);
-        let models = models(&kind, name, &medium.medium)?;
-        for (cloud_name, cloud) in puff_clouds(&kind) {
-            let volume = cloud.volume();
-            let Ok(traced) = path_trace.run(&volume, &medium.medium, &lights, |_| Ok::<_, Infallible>(()));
-            let mut drawn = vec![("path_trace", traced.light, traced.coverage)];
-            for (model, material) in &models {
-                drawn.push((model, cloud.drawn(&lights, material)?, cloud.drawn_coverage(material)?));
+        let kinds =
+            if has_sheets { sheets(&medium.medium, path_trace)? } else { vec![puffs(&medium.medium, path_trace)?] };
+        for (sheet, kind) in &kinds {
+            let models = models(kind, name, &medium.medium)?;
+            let shown = if has_sheets { sheet_frames(sheet, kind) } else { puff_clouds(kind) };
+            for (cloud_name, cloud) in shown {
+                let volume = cloud.volume();
+                let Ok(traced) = path_trace.run(&volume, &medium.medium, &lights, |_| Ok::<_, Infallible>(()));
+                let mut drawn = vec![("path_trace", traced.light, traced.coverage)];
+                for (model, material) in &models {
+                    drawn.push((model, cloud.drawn(&lights, material)?, cloud.drawn_coverage(material)?));
+                }
+                let file = format!("{name}_{cloud_name}");
+                fs::write(folder.join(&file).with_extension("vol"), volume.to_mitsuba())?;
+                let Medium { albedo, anisotropy, density } = medium.medium;
+                clouds.push(json!({
+                    "medium": name,
+                    "name": cloud_name,
+                    "albedo": albedo.to_array(),
+                    "g": anisotropy,
+                    "density": density,
+                    "volume": format!("{file}.vol"),
+                    "drawn": write_images(folder, &file, &drawn)?,
+                }));
+                eprintln!("{name}: drew {cloud_name}");
             }
-            let file = format!("{name}_{cloud_name}");
-            fs::write(folder.join(&file).with_extension("vol"), volume.to_mitsuba())?;
-            let Medium { albedo, anisotropy, density } = medium.medium;
-            clouds.push(json!({
-                "medium": name,
-                "name": cloud_name,
-                "albedo": albedo.to_array(),
-                "g": anisotropy,
-                "density": density,
-                "volume": format!("{file}.vol"),
-                "drawn": write_images(folder, &file, &drawn)?,
-            }));
-            eprintln!("{name}: drew {cloud_name}");
-        }
-        if milliseconds.is_none() {
-            milliseconds = Some(time_frames(&models).unwrap_or_else(|error| json!({ "error": error.to_string() })));
+            if milliseconds.is_none() {
+                milliseconds = Some(time_frames(&models).unwrap_or_else(|error| json!({ "error": error.to_string() })));
+            }
         }
     }
     let lights: Vec<_> = lights.iter().map(Vec3::to_array).collect();
@@ -108,21 +120,50 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Ten volumes: two single puffs, three columns, three balls, two layers.
-fn puff_clouds(kind: &PuffKind) -> Vec<(&'static str, PuffCloud<'_>)> {
-    let single = |frame| {
-        let mut cloud = kind.single();
-        cloud.particles[0].frame = frame;
-        cloud
+/// Puffs of a built-in sprite.
+fn puffs(medium: &Medium, path_trace: PathTrace) -> Result<(&'static str, PuffKind), Box<dyn Error>> {
+    let recipe = SpriteRecipe::of_builtin(builtin::find(builtin::SPRITES, "billow").ok_or("no sprite billow")?)?;
+    Ok(("billow", PuffKind::new(&SpriteRecipe { seed: SPRITE_SEED, ..recipe }, medium, path_trace)))
+}
+
+/// Flipbooks of simulated smoke.
+fn sheets(medium: &Medium, path_trace: PathTrace) -> Result<Vec<(&'static str, PuffKind)>, Box<dyn Error>> {
+    let sheet = |name: &'static str| {
+        let builtin = builtin::find(builtin::SIMULATIONS, name).ok_or("no such simulation")?;
+        let mut recipe = SimRecipe::of_built_in(builtin)?;
+        recipe.sheet = SheetLayout { size: path_trace.size, columns: SHEET_FRAMES, rows: 1, tolerance: 0 };
+        recipe.view.extinction = medium.density;
+        let mut simulation = Simulation::new(&recipe)?;
+        while simulation.finished_moments() < recipe.moment_count() {
+            simulation.advance();
+        }
+        Ok((name, PuffKind::of_recording(simulation.into_recording(), medium, path_trace)))
     };
+    SHEETS.into_iter().map(sheet).collect()
+}
+
+/// The frames of a sheet, each alone.
+fn sheet_frames<'a>(sheet: &str, kind: &'a PuffKind) -> Vec<(String, PuffCloud<'a>)> {
+    (0..SHEET_FRAMES).map(|frame| (format!("{sheet}_{}", frame + 1), single(kind, frame as f32))).collect()
+}
+
+fn single(kind: &PuffKind, frame: f32) -> PuffCloud<'_> {
+    let mut cloud = kind.single();
+    cloud.particles[0].frame = frame;
+    cloud
+}
+
+/// Ten volumes: two single puffs, three columns, three balls, two layers.
+fn puff_clouds(kind: &PuffKind) -> Vec<(String, PuffCloud<'_>)> {
     let random = CLOUDS.map(|(name, shape, seed)| {
         let mut cloud = kind.cloud(shape, seed);
         if name == "ball_of_eight" {
             cloud.particles.truncate(FEW);
         }
-        (name, cloud)
+        (name.to_owned(), cloud)
     });
-    [("puff_a", single(0.0)), ("puff_b", single(1.0))].into_iter().chain(random).collect()
+    let singles = [("puff_a", 0.0), ("puff_b", 1.0)].map(|(name, frame)| (name.to_owned(), single(kind, frame)));
+    singles.into_iter().chain(random).collect()
 }
 
 /// Lighting models by name.

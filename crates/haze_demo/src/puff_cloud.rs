@@ -9,16 +9,18 @@ use glam::{Mat4, UVec2, UVec3, Vec2, Vec3, Vec4, Vec4Swizzles as _, vec3};
 use haze::{Light, LightKind, MaterialAssets, Particle, View};
 use haze_author::path_trace::{DensityVolume, Medium, PathTrace};
 use haze_author::ramp::response::{Response, ShadedLight};
+use haze_author::simulation::Recording;
 use haze_author::sprite::bake::SpriteRecipe;
-use haze_author::sprite::six_way::six_way_layout;
+use haze_author::sprite::six_way::{BakedSixWay, six_way_layout};
 use haze_core::assets::image::Image;
 use haze_core::assets::noise::{pcg3d, unit};
 use haze_core::assets::ramp::Ramp;
-use haze_core::assets::sprite::Sprite;
+use haze_core::assets::sprite::{Sprite, SpriteLayout};
 use haze_core::error::Error;
 use haze_core::settings::{Backlight, DebugView, Lighting, Settings, Technique};
 use haze_preset::{ImageSource, MaterialSources};
 use haze_reference::{FrameInput, ParticleSystem, PreparedFrame};
+use image::RgbaImage;
 
 /// Number of lights in the ring around a cloud.
 pub const LIGHTS: usize = 8;
@@ -70,10 +72,40 @@ pub fn ring_of_lights() -> Vec<Vec3> {
     turns.map(|turn| vec3(turn.sin(), 0.0, turn.cos())).collect()
 }
 
+/// Shape of puffs, from which images are baked.
+#[derive(Clone, Debug)]
+enum PuffShape {
+    Recipe(SpriteRecipe),
+    Recording(Recording),
+}
+
+impl PuffShape {
+    fn layout(&self) -> SpriteLayout {
+        match self {
+            Self::Recipe(recipe) => recipe.layout(),
+            Self::Recording(recording) => recording.layout(),
+        }
+    }
+
+    fn flipbook(&self) -> Result<RgbaImage, Error> {
+        match self {
+            Self::Recipe(recipe) => Ok(recipe.bake(|_| Ok::<_, Error>(()))?.image),
+            Self::Recording(recording) => Ok(recording.bake().sprite.image),
+        }
+    }
+
+    fn six_way(&self, medium: &Medium, samples: u32) -> Result<BakedSixWay, Error> {
+        match self {
+            Self::Recipe(recipe) => recipe.bake_six_way(medium, samples, |_, _| Ok(())),
+            Self::Recording(recording) => recording.bake_six_way(medium, samples, |_, _| Ok(())),
+        }
+    }
+}
+
 /// A sprite, as a medium fills it.
 #[derive(Clone, Debug)]
 pub struct PuffKind {
-    recipe: SpriteRecipe,
+    shape: PuffShape,
     medium: Medium,
     path_trace: PathTrace,
     puffs: Vec<DensityVolume>,
@@ -106,12 +138,19 @@ impl PuffKind {
             SpriteRecipe { size, columns: FRAMES, rows: 1, extinction: medium.density, tolerance: 0, ..recipe.clone() };
         let puff = |frame| SpriteRecipe { size: size / 2, ..recipe.clone() }.volume(frame as f32);
         let puffs = (0..FRAMES).map(puff).collect();
-        Self { recipe, medium: *medium, path_trace, puffs }
+        Self { shape: PuffShape::Recipe(recipe), medium: *medium, path_trace, puffs }
+    }
+
+    /// Puffs of a simulation whose smoke has the extinction of the medium. Its sprites have the size of `path_trace`.
+    pub fn of_recording(recording: Recording, medium: &Medium, path_trace: PathTrace) -> Self {
+        let SpriteLayout { columns, rows, .. } = recording.layout();
+        let puffs = (0..columns * rows).map(|frame| recording.density(frame, path_trace.size / 2)).collect();
+        Self { shape: PuffShape::Recording(recording), medium: *medium, path_trace, puffs }
     }
 
     /// Volume of one puff.
     pub fn puff(&self, frame: u32) -> &DensityVolume {
-        &self.puffs[(frame % FRAMES) as usize]
+        &self.puffs[frame as usize % self.puffs.len()]
     }
 
     /// A cloud of puffs at random positions.
@@ -125,7 +164,7 @@ impl PuffKind {
                 radius: 0.26 + 0.12 * unit(b.x),
                 rotation: 0.0,
                 amount: 1.0,
-                frame: (b.y % FRAMES) as f32,
+                frame: (b.y % self.puffs.len() as u32) as f32,
                 age: 0.5,
                 ..Particle::default()
             }
@@ -156,9 +195,9 @@ impl PuffKind {
         settings.accumulate.downscale = 1;
         settings.soft_scatter.intensity = 0.0;
         settings.specular_scatter.intensity = 0.0;
-        let sheet = self.recipe.bake(|_| Ok::<_, Error>(()))?.image;
+        let flipbook = self.shape.flipbook()?;
         let assets = MaterialAssets {
-            sprite: Sprite::from_image(Path::new("puff"), &sheet, self.recipe.layout())?,
+            sprite: Sprite::from_image(Path::new("puff"), &flipbook, self.shape.layout())?,
             detail: None,
             ..MaterialSources::default().load(ImageSource::BuiltIn)?
         };
@@ -172,8 +211,8 @@ impl PuffKind {
     pub fn materials(&self, diffuse: &Ramp, backlight: &Ramp) -> Result<[PuffMaterial; 2], Error> {
         let PuffMaterial { mut settings, assets, .. } = self.material()?;
         settings.diffuse.backlight = Backlight::Ramp;
-        let maps = self.recipe.bake_six_way(&self.medium, self.path_trace.samples, |_, _| Ok::<_, Error>(()))?;
-        let layout = six_way_layout(self.recipe.layout());
+        let maps = self.shape.six_way(&self.medium, self.path_trace.samples)?;
+        let layout = six_way_layout(self.shape.layout());
         let assets = MaterialAssets {
             six_way: Some(Sprite::from_image(Path::new("puff"), &maps.image, layout)?),
             diffuse_ramp: diffuse.clone(),
