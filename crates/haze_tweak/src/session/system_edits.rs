@@ -18,7 +18,7 @@ impl Session {
     pub fn add_layer(&mut self, layer: &Layer) {
         let systems = &self.document.preset.systems;
         let selected = systems.get(self.view.system).filter(|system| !system.particle_files.is_used());
-        let source = selected.map(|system| system.emitter.clone());
+        let source = selected.map(|system| system.emitter);
         self.extend_systems(systems.len(), |preset| match source {
             Some(source) => layer.add_at_source(preset, &source),
             None => layer.add_at(preset, glam::Vec3::ZERO),

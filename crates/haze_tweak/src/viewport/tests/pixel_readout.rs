@@ -221,7 +221,8 @@ fn the_fire_ramp_is_shown_as_painted_or_as_exposed() {
         brightness(&screenshot(harness), rect)
     };
     let painted = ramp_brightness(&mut harness, 0.0);
-    assert_eq!(painted, ramp_brightness(&mut harness, -4.0), "as painted at any exposure");
+    let at_any_exposure = ramp_brightness(&mut harness, -4.0);
+    assert!((painted - at_any_exposure).abs() < 1.0, "{painted} {at_any_exposure}");
     harness.get_by_label("As exposed").click();
     let dark = ramp_brightness(&mut harness, -4.0);
     let bright = ramp_brightness(&mut harness, 0.0);
