@@ -3,7 +3,7 @@
 use glam::UVec2;
 use haze::shader;
 
-use super::scene_pipeline::{COLOR_FORMAT, ScenePipeline, default_view, texture, texture_entries};
+use super::scene_pipeline::{COLOR_FORMAT, ScenePipeline, default_view, image_pass_layout, texture, texture_entries};
 use super::scene_renderer::begin_pass;
 
 /// Pipeline of a pass, shared by all renderers of a device.
@@ -33,22 +33,7 @@ impl ImagePass {
             label: Some("demo image pass"),
             source: wgpu::ShaderSource::Wgsl(source.unwrap_or_default().into()),
         });
-        let texture = wgpu::BindingType::Texture {
-            sample_type: wgpu::TextureSampleType::Float { filterable: false },
-            view_dimension: wgpu::TextureViewDimension::D2,
-            multisampled: false,
-        };
-        let uniform = wgpu::BindingType::Buffer {
-            ty: wgpu::BufferBindingType::Uniform,
-            has_dynamic_offset: false,
-            min_binding_size: None,
-        };
-        let visibility = wgpu::ShaderStages::FRAGMENT;
-        let entry = |(binding, ty)| wgpu::BindGroupLayoutEntry { binding, visibility, ty, count: None };
-        let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("demo image pass"),
-            entries: &[(0, texture), (1, texture), (2, uniform)].map(entry),
-        });
+        let layout = image_pass_layout(device, "demo image pass", &[0, 1], 2);
         let pipeline = ScenePipeline {
             groups: &[Some(&layout)],
             vertex: "vertex",

@@ -1,6 +1,6 @@
 //! Pass that completes an image on the GPU: objects in front at outlines, with the smoke in front of them.
 
-use super::scene_pipeline::{COLOR_FORMAT, ScenePipeline, texture_entries};
+use super::scene_pipeline::{COLOR_FORMAT, ScenePipeline, image_pass_layout, texture_entries};
 use super::scene_renderer::{SceneTargets, begin_pass};
 use haze::shader;
 
@@ -45,26 +45,7 @@ impl OutlinePass {
             label: Some("demo scene outline"),
             source: wgpu::ShaderSource::Wgsl(source.unwrap_or_default().into()),
         });
-        let texture = wgpu::BindingType::Texture {
-            sample_type: wgpu::TextureSampleType::Float { filterable: false },
-            view_dimension: wgpu::TextureViewDimension::D2,
-            multisampled: false,
-        };
-        let uniform = wgpu::BindingType::Buffer {
-            ty: wgpu::BufferBindingType::Uniform,
-            has_dynamic_offset: false,
-            min_binding_size: None,
-        };
-        let entry = |(binding, ty)| wgpu::BindGroupLayoutEntry {
-            binding,
-            visibility: wgpu::ShaderStages::FRAGMENT,
-            ty,
-            count: None,
-        };
-        let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("demo scene outline"),
-            entries: &[(7, texture), (11, texture), (12, texture), (13, texture), (SMOKE, uniform)].map(entry),
-        });
+        let layout = image_pass_layout(device, "demo scene outline", &[7, 11, 12, 13], SMOKE);
         let pipeline = ScenePipeline {
             groups: &[Some(scene_layout), Some(&layout)],
             vertex: "fullscreen_vertex",

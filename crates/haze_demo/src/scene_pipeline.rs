@@ -90,3 +90,27 @@ pub(crate) fn texture_entries<const COUNT: usize>(
 ) -> [wgpu::BindGroupEntry<'_>; COUNT] {
     textures.map(|(binding, view)| wgpu::BindGroupEntry { binding, resource: wgpu::BindingResource::TextureView(view) })
 }
+
+/// Layout of the group of a pass over an image: textures, then a uniform, by their bindings.
+pub(crate) fn image_pass_layout(
+    device: &wgpu::Device,
+    label: &str,
+    textures: &[u32],
+    uniform: u32,
+) -> wgpu::BindGroupLayout {
+    let texture = wgpu::BindingType::Texture {
+        sample_type: wgpu::TextureSampleType::Float { filterable: false },
+        view_dimension: wgpu::TextureViewDimension::D2,
+        multisampled: false,
+    };
+    let buffer = wgpu::BindingType::Buffer {
+        ty: wgpu::BufferBindingType::Uniform,
+        has_dynamic_offset: false,
+        min_binding_size: None,
+    };
+    let visibility = wgpu::ShaderStages::FRAGMENT;
+    let entry = |binding, ty| wgpu::BindGroupLayoutEntry { binding, visibility, ty, count: None };
+    let textures = textures.iter().map(|binding| entry(*binding, texture));
+    let entries: Vec<_> = textures.chain([entry(uniform, buffer)]).collect();
+    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries: &entries })
+}

@@ -10,8 +10,8 @@ use haze_author::simulation::{FrameLoop, SimRecipe, Simulation};
 use haze_core::assets::image::decode_png;
 use haze_core::assets::sprite::{Sprite, SpriteLayout};
 use haze_core::error::Error;
-use haze_core::settings::SpriteAnimation;
-use haze_preset::{encode_baked_png, is_baked_png};
+use haze_core::settings::{Lighting, SpriteAnimation};
+use haze_preset::{Preset, PresetSystem, encode_baked_png, is_baked_png};
 use image::DynamicImage;
 use serde::{Deserialize, Serialize};
 
@@ -146,7 +146,7 @@ impl OpenSimulation {
         self.running.take().iter().for_each(|running| running.ticket.cancel());
     }
 
-    /// Keeps the last preview for a recipe that is not valid.
+    /// Keeps the last preview for a recipe that makes none.
     fn refuse(&mut self) {
         self.running.take().iter().for_each(|running| running.ticket.cancel());
         let images = self.preview.take().and_then(|last| last.images);
@@ -247,8 +247,12 @@ impl SimulationEdit {
         }
         let (Some(open), Some(worker)) = (&mut self.open, &self.worker) else { return Ok(None) };
         while let Some(done) = worker.poll() {
-            // The panic of a job was printed to standard error.
-            let (Some(running), Some(FinishedSimulation { files })) = (open.running.take(), done) else { continue };
+            let Some(running) = open.running.take() else { continue };
+            let Some(FinishedSimulation { files }) = done else {
+                // The panic of a job was printed to standard error; it is not tried again.
+                open.refuse();
+                continue;
+            };
             if !running.is_full {
                 let images = preview_images(&running.recipe, files);
                 let last = open.preview.take();
@@ -282,13 +286,24 @@ impl SimulationEdit {
     }
 
     /// Shows the low resolution in place of the system's sprite.
-    pub fn apply(&self, materials: &mut [MaterialAssets]) {
+    pub fn apply(&self, preset: &Preset, materials: &mut [MaterialAssets]) {
         let Some(open) = &self.open else { return };
         let images = open.preview.as_ref().and_then(|preview| preview.images.as_ref());
-        if let Some((assets, [sprite, detail])) = materials.get_mut(open.system).zip(images) {
+        let has_normals = |system: &&PresetSystem| !system.settings.is_six_way();
+        let shown = preset.systems.get(open.system).filter(has_normals);
+        if let Some(((assets, [sprite, detail]), _)) = materials.get_mut(open.system).zip(images).zip(shown) {
             assets.sprite = sprite.clone();
             assets.detail = Some(detail.clone());
             assets.six_way = None;
+        }
+    }
+
+    /// Stays with its system, whose index has changed. `index`: the new one; `None` closes the simulation.
+    pub fn renumber(&mut self, index: impl Fn(usize) -> Option<usize>) {
+        let Some(open) = &mut self.open else { return };
+        match index(open.system) {
+            Some(index) => open.system = index,
+            None => self.close(),
         }
     }
 }
@@ -331,13 +346,18 @@ fn refusal(problem: NotBaked) -> Error {
     }
 }
 
-/// Names the images in the preset. A flipbook that ends is played over the life of a particle.
+/// Names the images in the preset. A flipbook that ends is played over the life of a particle. Six-way maps of another sprite do not
+/// fit.
 fn use_in(document: &mut Document, system: usize, name: &str, recipe: &SimRecipe) {
     let Some(system) = document.preset.systems.get_mut(system) else { return };
     system.material.sprite = name.into();
     system.material.detail = detail_of(Path::new(name)).display().to_string();
     SpriteLayout { columns: system.material.columns, rows: system.material.rows, y_down: system.material.y_down } =
         layout(recipe);
+    system.material.six_way.clear();
+    if system.settings.is_six_way() {
+        system.settings.lighting = Lighting::default();
+    }
     let sprite = &mut system.settings.sprite;
     sprite.motion = 1.0;
     sprite.animation = match recipe.time.frame_loop {

@@ -256,7 +256,7 @@ impl Session {
         let mut materials = self.loaded_materials.of(&self.document.preset);
         self.ramps.apply(&self.document.preset, &mut materials);
         self.sprites.apply(&self.document.preset, &mut materials);
-        self.simulation.apply(&mut materials);
+        self.simulation.apply(&self.document.preset, &mut materials);
         materials
     }
 

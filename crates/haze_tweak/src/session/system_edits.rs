@@ -33,11 +33,23 @@ impl Session {
     /// Removes a system and its keyframes.
     pub fn remove_system(&mut self, index: usize) {
         system_list::remove(&mut self.document.preset, index);
+        self.simulation.renumber(|system| (system != index).then(|| system - usize::from(system > index)));
         self.looks.close();
     }
 
     pub fn move_system(&mut self, from: usize, to: usize) {
         system_list::move_to(&mut self.document.preset, from, to);
+        self.simulation.renumber(|system| {
+            Some(if system == from {
+                to
+            } else if (from..=to).contains(&system) {
+                system - 1
+            } else if (to..from).contains(&system) {
+                system + 1
+            } else {
+                system
+            })
+        });
         self.view.systems.reveals_selected = true;
         self.looks.close();
     }
@@ -54,6 +66,7 @@ impl Session {
         match add(&mut self.document.preset) {
             Ok(()) => {
                 self.messages.clear("systems");
+                self.simulation.renumber(|system| Some(system + usize::from(system >= index)));
                 self.follow_systems();
                 self.view.system = index;
                 self.view.systems.reveals_selected = true;

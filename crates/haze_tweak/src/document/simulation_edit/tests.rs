@@ -8,7 +8,6 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use haze_core::assets::json;
 use haze_core::settings::SpriteAnimation;
-use haze_preset::Preset;
 
 use super::*;
 use crate::window::Window;
@@ -82,7 +81,7 @@ fn sprite(harness: &Harness<'_, Window>) -> Sprite {
     harness.state().session.materials()[0].sprite.clone()
 }
 
-fn system(harness: &Harness<'_, Window>) -> haze_preset::PresetSystem {
+fn system(harness: &Harness<'_, Window>) -> PresetSystem {
     harness.state().session.document.preset.systems[0].clone()
 }
 
@@ -153,6 +152,34 @@ fn closing_or_stopping_a_simulation_leaves_the_sprite_as_it_was() {
     harness.run_steps(3);
     assert!(sprite(&harness) == before && harness.query_by_label("Simulation: puff").is_none());
     assert_eq!(std::fs::read_dir(folder.0.path()).unwrap().count(), 1);
+}
+
+#[test]
+fn a_simulation_stays_with_its_system() {
+    let folder = Folder::new();
+    let mut harness = folder.open();
+    let session = &mut harness.state_mut().session;
+    session.add_layer(haze_preset::layers::find_layer("LAYER", "steam").unwrap());
+    session.move_system(0, 1);
+    assert!(session.simulation.of_system(0).is_none() && session.simulation.of_system(1).is_some());
+    session.remove_system(0);
+    assert!(session.simulation.of_system(0).is_some());
+    session.duplicate_system(0);
+    assert!(session.simulation.of_system(0).is_some());
+    session.remove_system(0);
+    assert!((0..2).all(|system| session.simulation.of_system(system).is_none()));
+}
+
+#[test]
+fn six_way_light_is_turned_off_by_the_bake() {
+    let folder = Folder::new();
+    let mut harness = folder.open();
+    harness.state_mut().session.document.preset.systems[0].settings.lighting = Lighting::SixWay;
+    edit(&mut harness, |recipe| *recipe = small());
+    until(&mut harness, |harness| harness.query_by_label_contains("No preview with six-way light").is_some());
+    harness.get_by_label("Bake").click();
+    until(&mut harness, |harness| system(harness).material.sprite == "puff_mine.png");
+    assert!(!system(&harness).settings.is_six_way());
 }
 
 #[test]

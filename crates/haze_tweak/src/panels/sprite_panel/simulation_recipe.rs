@@ -41,6 +41,7 @@ pub fn menu(ui: &mut Ui, session: &mut Session) {
 /// Draws the open simulation of a system.
 pub fn panel(ui: &mut Ui, session: &mut Session, system: usize) {
     let is_built_in = session.document.is_built_in();
+    let is_six_way = session.document.preset.systems.get(system).is_some_and(|system| system.settings.is_six_way());
     let Some(open) = session.simulation.of_system(system) else { return };
     let recipe = open.recipe.clone();
     let title = format!("Simulation: {}", truncate_middle(&open.name(), 30));
@@ -69,6 +70,8 @@ pub fn panel(ui: &mut Ui, session: &mut Session, system: usize) {
         ui.add(ProgressBar::new(finished as f32 / count.max(1) as f32).text(text));
         // The simulation does not request frames, so the progress bar does.
         ui.ctx().request_repaint_after(Duration::from_millis(100));
+    } else if is_six_way {
+        ui.weak("No preview with six-way light, which the bake turns off");
     } else {
         ui.weak("Preview: half the grid, a quarter of the frames");
     }
