@@ -12,6 +12,7 @@ use image::{Rgba, RgbaImage, imageops};
 
 use super::height::{dome_heights, map_pixels, normal_of};
 use super::lint::{clear_borders, describe_non_normals};
+use super::opacity::{has_alpha, is_gray, opacities};
 use super::six_way::{Packing, pack};
 use super::y_direction::{MIN_CONFIDENCE, YDirection, y_direction};
 
@@ -28,7 +29,7 @@ choice! {
         /// Two light maps in the layout of Unity's VFX Graph: right, top, back; left, bottom, front. Alpha of the first
         /// = amount; alpha of the second, emission, is left out.
         SixWayUnity = "six_way_unity",
-        /// Two light maps: right, left, top; bottom, back, front. Alpha of the first = amount.
+        /// Two light maps: right, left, top; bottom, back, front. Alpha of the first, or else of the second = amount.
         SixWayRltBbf = "six_way_rlt_bbf",
     }
 }
@@ -43,7 +44,7 @@ impl ImportSource {
         }
     }
 
-    /// True if the source consists of two images.
+    /// True if the source consists of two images, or three if the opacity has one of its own.
     pub fn needs_two_images(self) -> bool {
         self.packing().is_some()
     }
@@ -91,12 +92,12 @@ pub fn arrange_sheet(frames: &[(&Path, RgbaImage)]) -> Result<(RgbaImage, UVec2)
     Ok((sheet, UVec2::new(columns, count / columns)))
 }
 
-/// Converts a sheet, or two for sources that need two, to a sprite. `y_down` gives the direction of green in painted
-/// normals; with `None` it is detected, and taken as up if uncertain. `strength` scales heights and domes: 1 is a
-/// hemisphere.
+/// Converts a sheet to a sprite; of light maps, two sheets, and a third that is gray if the opacity is in neither. `y_down`
+/// gives the direction of green in painted normals; with `None` it is detected, and taken as up if uncertain. `strength`
+/// scales heights and domes: 1 is a hemisphere.
 ///
 /// # Errors
-/// [`AssetError::Image`] if the sheets do not fit the layout or each other.
+/// [`AssetError::Image`] if the sheets do not fit the layout or each other, and if light maps have no opacity.
 pub fn import_sprite(
     path: &Path,
     sheets: &[RgbaImage],
@@ -105,21 +106,8 @@ pub fn import_sprite(
     y_down: Option<bool>,
     strength: f32,
 ) -> Result<ImportedSprite, AssetError> {
-    let refuse = |reason: String| Err(AssetError::Image { path: path.into(), reason });
-    let [first, rest @ ..] = sheets else { return refuse("no image; expected one".into()) };
-    let second = rest.first();
-    if rest.len() != usize::from(source.needs_two_images()) {
-        return refuse(format!("{} sheets; expected {}", sheets.len(), 1 + u32::from(source.needs_two_images())));
-    }
-    if let Some(second) = second.filter(|second| second.dimensions() != first.dimensions()) {
-        let size = |sheet: &RgbaImage| format!("{}x{}", sheet.width(), sheet.height());
-        return refuse(format!("the second sheet has {} pixels; expected {} as the first", size(second), size(first)));
-    }
-    let mut image = first.clone();
-    let has_alpha = image.pixels().any(|texel| texel.0[3] != 255);
-    if matches!(source, ImportSource::Alpha) && !has_alpha {
-        image.pixels_mut().for_each(|texel| texel.0[3] = texel.0[0]);
-    }
+    let ImportSheets { mut image, second } = ImportSheets::new(path, sheets, source)?;
+    let emission = second.and_then(|second| emission(&image, second));
     let columns = layout.columns.max(1);
     let rows = layout.rows.max(1);
     let size = UVec2::new(image.width() / columns, image.height() / rows);
@@ -157,7 +145,6 @@ pub fn import_sprite(
         }
         ImportSource::SixWayUnity | ImportSource::SixWayRltBbf => {}
     }
-    let emission = second.and_then(|second| emission(first, second));
     let light = source.packing().zip(second);
     let six_way = light.map(|(packing, second)| pack(&image, second, packing));
     if let Some((packing, second)) = light {
@@ -167,6 +154,71 @@ pub fn import_sprite(
         }
     }
     Ok(ImportedSprite { image, six_way, y_direction: found, emission, not_normals, border })
+}
+
+/// Sheets of an import.
+struct ImportSheets<'a> {
+    /// First sheet, with the amount in alpha.
+    image: RgbaImage,
+    /// Second light map.
+    second: Option<&'a RgbaImage>,
+}
+
+impl<'a> ImportSheets<'a> {
+    /// Finds the sheet that has the opacity.
+    ///
+    /// # Errors
+    /// As [`import_sprite`], but for the layout.
+    fn new(path: &Path, sheets: &'a [RgbaImage], source: ImportSource) -> Result<Self, AssetError> {
+        let refuse = |reason: String| Err(AssetError::Image { path: path.into(), reason });
+        let [first, rest @ ..] = sheets else { return refuse("no image; expected one".into()) };
+        if let Some(other) = rest.iter().find(|other| other.dimensions() != first.dimensions()) {
+            let size = |sheet: &RgbaImage| format!("{}x{}", sheet.width(), sheet.height());
+            return refuse(format!("another sheet has {} pixels; expected {} as the first", size(other), size(first)));
+        }
+        let Some(packing) = source.packing() else {
+            if !rest.is_empty() {
+                return refuse(format!("{} sheets; expected 1", sheets.len()));
+            }
+            let mut image = first.clone();
+            if source == ImportSource::Alpha {
+                set_alpha(&mut image, &opacities(first));
+            }
+            return Ok(Self { image, second: None });
+        };
+        let third = match sheets {
+            [_, _] => None,
+            [_, _, _] => match sheets.iter().rposition(is_gray) {
+                None => return refuse("none of 3 sheets is gray; expected two light maps and their opacity".into()),
+                gray => gray,
+            },
+            _ => {
+                let expected = "2 light maps, or 3 sheets if the opacity has its own";
+                return refuse(format!("{} sheets; expected {expected}", sheets.len()));
+            }
+        };
+        let mut maps = sheets.iter().enumerate().filter(|(index, _)| Some(*index) != third).map(|(_, sheet)| sheet);
+        let (Some(map), Some(second)) = (maps.next(), maps.next()) else {
+            return refuse("no two light maps; expected them".into());
+        };
+        // Alpha of the second map may be emission in Unity's packing.
+        let in_second = (has_alpha(second) && !packing.has_emission()).then_some(second);
+        let opacity = third.map(|index| &sheets[index]).or(has_alpha(map).then_some(map)).or(in_second);
+        let Some(opacity) = opacity else {
+            return refuse(
+                "no opacity: alpha of the light maps is the same everywhere; expected the amount in alpha of the first, or \
+                 a third sheet, gray"
+                    .into(),
+            );
+        };
+        let mut image = map.clone();
+        set_alpha(&mut image, &opacities(opacity));
+        Ok(Self { image, second: Some(second) })
+    }
+}
+
+fn set_alpha(image: &mut RgbaImage, alphas: &[u8]) {
+    image.pixels_mut().zip(alphas).for_each(|(texel, &alpha)| texel.0[3] = alpha);
 }
 
 /// Returns the largest alpha of the second light map, unless it is the amount, or the same in all texels.
@@ -273,6 +325,29 @@ mod tests {
     }
 
     #[test]
+    fn opacity_of_light_maps_is_found_or_they_are_refused() {
+        let light = |amount: fn(f32) -> f32| balls(move |n, a| [0.5 + n.x * 0.4, 0.5 - n.x * 0.4, 0.6, amount(a)]);
+        let plain = || light(|_| 1.0);
+        let opacity = balls(|_, amount| [amount, amount, amount, 1.0]);
+        let import = |sheets: &[RgbaImage], source| {
+            import_sprite(Path::new("a.png"), sheets, source, LAYOUT, None, 1.0).map(|imported| imported.image)
+        };
+        let expected = import(&[light(|amount| amount), plain()], ImportSource::SixWayUnity).unwrap();
+        for (sheets, source) in [
+            (vec![plain(), plain(), opacity.clone()], ImportSource::SixWayUnity),
+            (vec![opacity, plain(), plain()], ImportSource::SixWayRltBbf),
+            (vec![plain(), light(|amount| amount)], ImportSource::SixWayRltBbf),
+        ] {
+            let found = import(&sheets, source).unwrap();
+            assert!(found.pixels().zip(expected.pixels()).all(|(a, b)| a.0[3] == b.0[3]), "{source:?}");
+        }
+        for sheets in [[plain(), plain()], [plain(), light(|amount| amount)]] {
+            let message = import(&sheets, ImportSource::SixWayUnity).unwrap_err().to_string();
+            assert!(message.starts_with("a.png: no opacity: ") && message.contains("a third sheet, gray"), "{message}");
+        }
+    }
+
+    #[test]
     fn sheets_that_do_not_fit_are_refused() {
         let sheet = balls(|_, _| [0.5; 4]);
         let message = |sheets: &[RgbaImage], source| {
@@ -281,9 +356,11 @@ mod tests {
         assert!(message(&[], ImportSource::Height).contains("expected one"));
         assert!(message(std::slice::from_ref(&sheet), ImportSource::SixWayRltBbf).contains("1 sheets; expected 2"));
         assert!(
-            message(&[sheet.clone(), sheet.clone(), sheet.clone()], ImportSource::SixWayUnity)
-                .contains("3 sheets; expected 2")
+            message(&vec![sheet.clone(); 4], ImportSource::SixWayUnity).contains("4 sheets; expected 2 light maps")
         );
+        assert!(message(&vec![sheet.clone(); 2], ImportSource::Height).contains("2 sheets; expected 1"));
+        let color = balls(|_, _| [0.2, 0.5, 0.9, 1.0]);
+        assert!(message(&vec![color; 3], ImportSource::SixWayUnity).contains("none of 3 sheets is gray"));
         let small = RgbaImage::new(64, 64);
         assert!(message(&[sheet, small.clone()], ImportSource::SixWayUnity).contains("expected 128x64 as the first"));
         assert!(message(&[small], ImportSource::Alpha).contains("square frames"));

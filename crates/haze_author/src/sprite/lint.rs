@@ -7,6 +7,7 @@ use haze_core::assets::sprite::{Sprite, SpriteLayout};
 use haze_core::error::AssetError;
 use image::RgbaImage;
 
+use super::opacity::is_opaque;
 use super::y_direction::{MIN_CONFIDENCE, normal, y_direction};
 use crate::finding::Finding;
 
@@ -21,6 +22,7 @@ const LENGTHS: [f32; 2] = [0.85, 1.1];
 /// green.
 ///
 /// - `empty`: the amount is 0 everywhere.
+/// - `opaque`: the amount is 1 everywhere inside the borders.
 /// - `normals`: the image holds colors or heights, not normals.
 /// - `length`: normals do not have unit length.
 /// - `y_down`: green points in the other direction.
@@ -46,6 +48,9 @@ pub fn lint_sprite(path: &Path, image: &RgbaImage, layout: SpriteLayout) -> Resu
     if is_clear(&sprite) {
         find("empty", EMPTY_MESSAGE.into());
         return Ok(findings);
+    }
+    if is_square(&sprite) {
+        find("opaque", OPAQUE_MESSAGE.into());
     }
     if let Some(description) = describe_non_normals(&sprite) {
         find("normals", description.into());
@@ -127,6 +132,21 @@ pub const EMPTY_MESSAGE: &str = "alpha is 0 everywhere; expected the amount in a
 /// True if the amount is 0 in every texel.
 pub fn is_clear(sprite: &Sprite) -> bool {
     texels(sprite).all(|texel| texel.w <= 0.0)
+}
+
+/// Message for a sprite that is opaque up to its borders.
+const OPAQUE_MESSAGE: &str =
+    "alpha is 255 everywhere inside the borders, so that each frame shows as a square; expected the amount in alpha";
+
+/// True if the amount is 1 in nearly all texels inside the borders of the frames.
+fn is_square(sprite: &Sprite) -> bool {
+    let inside = 1..sprite.size().saturating_sub(1);
+    // Frames of few texels may well be full.
+    let positions = inside.clone().flat_map(|y| inside.clone().map(move |x| UVec2::new(x, y)));
+    let alphas = (0..sprite.frame_count()).flat_map(|frame| {
+        positions.clone().map(move |at| (sprite.texel(0, frame, at.x, at.y).w * 255.0).round() as u8)
+    });
+    sprite.size() > 4 && is_opaque(alphas)
 }
 
 /// Returns a description of the sprite's contents if they are not normals.
@@ -264,6 +284,7 @@ mod tests {
         assert_eq!(names(&changed(|[r, g, _, a]| [255.0, g * 0.6, r * 0.2, a]), LAYOUT), ["normals"]);
         assert_eq!(names(&changed(|[r, g, _, a]| [r * 0.5, g * 0.9, 255.0, a]), LAYOUT), ["normals"]);
         assert_eq!(names(&changed(|[r, g, b, _]| [r, g, b, 0.0]), LAYOUT), ["empty"]);
+        assert_eq!(names(&changed(|[r, g, b, _]| [r, g, b, 255.0]), LAYOUT)[..2], ["border", "opaque"]);
         let mut square = wisp();
         square.put_pixel(300, 0, Rgba([128, 128, 255, 9]));
         assert_eq!(names(&square, LAYOUT), ["border"]);

@@ -5,5 +5,6 @@ pub mod detail;
 mod height;
 pub mod import_sprite;
 pub mod lint;
+mod opacity;
 pub mod six_way;
 pub mod y_direction;

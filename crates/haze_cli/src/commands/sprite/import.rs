@@ -20,8 +20,8 @@ use haze_export::recipe_files::six_way_path;
 
 #[derive(Args)]
 pub struct Arguments {
-    /// PNGs: one sheet, one file per frame in their order, or the two sheets of six-way light maps. Files whose names
-    /// differ only by a number are sorted by it.
+    /// PNGs: one sheet, one file per frame in their order, or the two sheets of six-way light maps, with a third, gray, if
+    /// neither has the opacity in alpha. Files whose names differ only by a number are sorted by it.
     #[arg(required = true)]
     files: Vec<PathBuf>,
     /// PNG to write.
@@ -120,6 +120,10 @@ fn refusal(source: ImportSource, not_normals: Option<&str>, findings: &[Finding]
     // Normals from light maps lean to the sides that were lit, which the check takes for colors.
     let kinds: &[&str] = if source.needs_two_images() { &["empty"] } else { &["normals", "empty"] };
     let useless = findings.iter().find(|finding| kinds.contains(&finding.name));
+    let opaque = findings.iter().find(|finding| finding.name == "opaque");
+    if let (None, None, Some(opaque)) = (not_normals, useless, opaque) {
+        return Some(opaque.description.clone());
+    }
     let found = not_normals.or(useless.map(|finding| finding.description.as_str()))?;
     let problem = found.split("; ").next().unwrap_or(found);
     Some(match source {

@@ -96,10 +96,13 @@ fn images_of_other_kinds_are_imported_as_sprites() {
     // Nothing is written that the check would refuse.
     let slope = |x: u32, _| image::Luma([4 * x as u8]);
     image::GrayImage::from_fn(64, 64, slope).save(folder.path().join("gray.png")).unwrap();
+    let dome = |x: u32, y: u32| image::Luma([255 - (((x as i32 - 32).pow(2) + (y as i32 - 32).pow(2)) / 9) as u8]);
+    image::GrayImage::from_fn(64, 64, dome).save(folder.path().join("dome.png")).unwrap();
     for (arguments, expected) in [
         (&["fire.png"][..], "fire.png: colors, not normals; expected normals, or --from with the contents"),
         (&["gray.png"], "gray.png: shades of gray; expected normals, or --from with the contents"),
         (&["gray.png", "--from", "height"], "gray.png: these heights make no puff; expected a puff that is highest"),
+        (&["dome.png", "--from", "height"], "dome.png: alpha is 255 everywhere inside the borders, so that each frame"),
     ] {
         let text = refusal(folder.path(), &[&["sprite", "import", "-o", "a.png"], arguments].concat());
         assert!(text.contains(expected), "{text}");
@@ -111,7 +114,14 @@ fn images_of_other_kinds_are_imported_as_sprites() {
     fs::remove_file(folder.path().join("a.png")).unwrap();
     // Options that would be ignored are refused.
     for (arguments, expected) in [
-        (&["fire.png", "fire.png", "fire.png", "--from", "six_way_unity"][..], "3 sheets; expected 2"),
+        (
+            &["fire.png", "fire.png", "fire.png", "--from", "six_way_unity"][..],
+            "none of 3 sheets is gray; expected two",
+        ),
+        (
+            &["fire.png", "fire.png", "--from", "six_way_rlt_bbf"],
+            "fire.png: no opacity: alpha of the light maps is the same everywhere; expected the amount in alpha of the first",
+        ),
         (
             &["fire.png", "--from", "alpha", "--y-down"],
             "--y-down: has no effect with --from alpha; expected --from normals",
