@@ -133,11 +133,8 @@ fn sheets(medium: &Medium, path_trace: PathTrace) -> Result<Vec<(&'static str, P
         let mut recipe = SimRecipe::of_built_in(builtin)?;
         recipe.sheet = SheetLayout { size: path_trace.size, columns: SHEET_FRAMES, rows: 1, tolerance: 0 };
         recipe.view.extinction = medium.density;
-        let mut simulation = Simulation::new(&recipe)?;
-        while simulation.finished_moments() < recipe.moment_count() {
-            simulation.advance();
-        }
-        Ok((name, PuffKind::of_recording(simulation.into_recording(), medium, path_trace)))
+        let recording = Simulation::new(&recipe)?.finish();
+        Ok((name, PuffKind::of_recording(recording, medium, path_trace)))
     };
     SHEETS.into_iter().map(sheet).collect()
 }

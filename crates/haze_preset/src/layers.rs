@@ -29,7 +29,7 @@ impl Layer {
     /// Adds the system to a preset, with the origin moved to a position, metres. The camera gets what the layer needs.
     ///
     /// # Errors
-    /// As [`system_list::add`].
+    /// If the preset has [`MAX_SYSTEMS`](crate::MAX_SYSTEMS) systems, or is not valid with one more. It then stays as it was.
     pub fn add_at(&self, preset: &mut Preset, position: Vec3) -> Result<(), FieldError> {
         self.add(preset, self.at(position))
     }
@@ -38,7 +38,7 @@ impl Layer {
     /// ground below.
     ///
     /// # Errors
-    /// As [`system_list::add`].
+    /// As [`add_at`](Self::add_at).
     pub fn add_at_source(&self, preset: &mut Preset, source: &Emitter) -> Result<(), FieldError> {
         self.add(preset, self.at_source(source))
     }

@@ -16,7 +16,7 @@ pub(super) fn add(preset: &mut Preset, system: PresetSystem) -> Result<(), Field
 /// Inserts a copy of a system after it, with copies of its tracks.
 ///
 /// # Errors
-/// As [`add`].
+/// If the preset has [`MAX_SYSTEMS`] systems, or is not valid with one more. The preset then stays as it was.
 pub fn duplicate(preset: &mut Preset, index: usize) -> Result<(), FieldError> {
     let Some(system) = preset.systems.get(index).cloned() else { return Ok(()) };
     let mut changed = preset.clone();

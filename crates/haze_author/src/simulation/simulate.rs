@@ -51,6 +51,14 @@ impl<'a> Simulation<'a> {
         Some(Moment { fluid: &self.fluid, number: self.finished_moments(), has_heat: self.recipe.burns() })
     }
 
+    /// Simulates the moments that are left, and returns all, framed.
+    pub fn finish(mut self) -> Recording {
+        while self.finished_moments() < self.recipe.moment_count() {
+            self.advance();
+        }
+        self.into_recording()
+    }
+
     /// Returns the finished moments, framed.
     pub fn into_recording(self) -> Recording {
         let Self { recipe, fluid, frames, .. } = self;

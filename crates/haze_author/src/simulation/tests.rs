@@ -31,14 +31,7 @@ fn small() -> SimRecipe {
 }
 
 fn run(recipe: &SimRecipe) -> BakedRecording {
-    finish(Simulation::new(recipe).unwrap()).bake()
-}
-
-fn finish(mut simulation: Simulation<'_>) -> Recording {
-    while simulation.finished_moments() < simulation.recipe.moment_count() {
-        simulation.advance();
-    }
-    simulation.into_recording()
+    Simulation::new(recipe).unwrap().finish().bake()
 }
 
 /// Sum of all smoke, and the mean height of it.
@@ -284,7 +277,7 @@ fn a_simulation_goes_on_from_any_moment_to_the_same_images() {
         let checkpoint = simulation.to_checkpoint();
         let resumed = Simulation::resume(&recipe, &checkpoint).unwrap().unwrap();
         assert_eq!(resumed.finished_moments(), finished);
-        let baked = finish(resumed).bake();
+        let baked = resumed.finish().bake();
         assert!(baked.sprite.image == whole.sprite.image && baked.sprite.detail == whole.sprite.detail, "{finished}");
         assert!(baked.heat == whole.heat && baked.heat.is_some());
         simulation.advance();
