@@ -37,6 +37,8 @@ mod shaders;
 mod sheets;
 #[path = "cli/special_targets.rs"]
 mod special_targets;
+#[path = "cli/sprite_read.rs"]
+mod sprite_read;
 #[path = "cli/sprites.rs"]
 mod sprites;
 #[path = "cli/streams.rs"]

@@ -12,5 +12,6 @@ mod trace;
 
 pub use bake_maps::{BakedSixWay, bake_six_way};
 pub use haze_core::assets::sprite::six_way_layout;
+pub(in crate::sprite) use packing::encode_texel;
 pub use packing::{Packing, pack, unpack};
 pub use trace::{SixWayMix, TracedSixWay};

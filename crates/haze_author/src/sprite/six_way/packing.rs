@@ -83,7 +83,7 @@ pub fn unpack(path: &Path, sheet: &RgbaImage, packing: Packing) -> Result<[RgbaI
 }
 
 /// Encodes a texel of either half.
-pub(super) fn encode_texel(light: Vec3, alpha: u8) -> Rgba<u8> {
+pub(in crate::sprite) fn encode_texel(light: Vec3, alpha: u8) -> Rgba<u8> {
     let [r, g, b] = light.to_array().map(|light| (light.clamp(0.0, 1.0).sqrt() * 255.0).round() as u8);
     Rgba([r, g, b, alpha])
 }

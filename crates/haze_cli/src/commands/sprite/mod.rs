@@ -5,6 +5,7 @@ mod check;
 mod export;
 mod import;
 mod light;
+mod read;
 mod recording_output;
 mod simulate;
 mod six_way;
@@ -38,6 +39,9 @@ enum SpriteCommand {
     /// Make a sprite from painted normals, heights, alpha or six-way light maps, given as one sheet or as numbered
     /// frames.
     Import(import::Arguments),
+    /// Make a sprite from sheets of any origin: finds grid, contents, codes, sides and directions, says how sure each answer
+    /// is, and mends what is missing.
+    Read(read::Arguments),
 }
 
 pub fn run(arguments: &SpriteArguments) -> Result<(), Failures> {
@@ -48,5 +52,6 @@ pub fn run(arguments: &SpriteArguments) -> Result<(), Failures> {
         SpriteCommand::Check(arguments) => check::run(arguments),
         SpriteCommand::Light(arguments) => light::run(arguments).map_err(Failures::from),
         SpriteCommand::Import(arguments) => import::run(arguments).map_err(Failures::from),
+        SpriteCommand::Read(arguments) => read::run(arguments).map_err(Failures::from),
     }
 }

@@ -5,7 +5,7 @@
 use super::{folder, refusal};
 
 /// Commands that read a file, with `{}` in its place.
-const READERS: [(&str, &str); 25] = [
+const READERS: [(&str, &str); 26] = [
     ("{}.json", "preset check {}"),
     ("{}.json", "preset show {}"),
     ("{}.json", "preset new new.json --from {}"),
@@ -28,6 +28,7 @@ const READERS: [(&str, &str); 25] = [
     ("{}.noise.json", "sprite bake {}"),
     ("{}.png", "sprite check {}"),
     ("{}.png", "sprite import {} -o out.png"),
+    ("{}.png", "sprite read {} -o out.png"),
     ("{}.six_way.png", "sprite export {} -o out.png out2.png"),
     ("{}.json", "bench compare {} {}"),
     ("{}.json", "bench page {} -o out.html"),

@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 use super::{MOTIF, folder, refusal, stderr};
 
 /// Every file that a command writes, with the command. `ramp watch` and the window have tests of their own.
-const WRITERS: [(&str, &str); 28] = [
+const WRITERS: [(&str, &str); 29] = [
     ("a.png", "render -o a.png"),
     ("a_0001.png", "render --frames 0..1 -o a_%04d.png"),
     ("a.gif", "render --frames 0..1 -o a.gif"),
@@ -37,6 +37,7 @@ const WRITERS: [(&str, &str); 28] = [
     ("a.detail.png", "sprite bake --overwrite a.sprite.json"),
     ("puff.six_way.png", "sprite bake --six-way ash puff"),
     ("a.png", "sprite import in.png -o a.png"),
+    ("a.heat.png", "sprite read in.png -o a"),
     ("b.png", "sprite export in.png -o a.png b.png"),
     ("a.vol", "sprite light -o a.png --volume a.vol"),
 ];
