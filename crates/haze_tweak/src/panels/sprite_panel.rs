@@ -1,6 +1,7 @@
 //! Sprite tab: the sprite of a system as it is lit, findings of its check, and its recipe.
 
 mod flipbook_view;
+mod recipe_rows;
 mod simulation_recipe;
 mod sprite_recipe;
 

@@ -13,7 +13,7 @@ use super::super::height::{dome_heights, map_pixels, normal_of};
 use super::super::six_way::encode_texel;
 use super::color::{AlphaMode, CodeSpace, decode};
 use super::fill::continue_edges;
-use super::grid::FrameGrid;
+use super::frame_grid::FrameGrid;
 use super::motion::MotionAxes;
 use super::playback::Playback;
 use super::sheet_file::SheetFile;

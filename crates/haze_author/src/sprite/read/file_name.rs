@@ -3,7 +3,7 @@
 use glam::UVec2;
 
 use super::role::Role;
-use super::six_way::Side;
+use super::side::Side;
 
 /// Words that tell the contents of a file. Those that begin with one of them count too: `normals`.
 const WORDS: [(&str, Role); 34] = [

@@ -1,34 +1,10 @@
 //! Order of the frames on a sheet.
 
 use glam::UVec2;
-use haze_core::settings::choice;
 
 use super::answer::Answer;
+use super::frame_grid::FrameOrder;
 use super::small_frames::SmallFrames;
-
-choice! {
-    /// Order of the frames on a sheet.
-    FrameOrder {
-        /// Left to right, then down.
-        #[default]
-        Rows = "rows",
-        /// Left to right, then up, from the bottom row.
-        RowsUp = "rows_up",
-        /// Down, then right.
-        Columns = "columns",
-    }
-}
-
-impl FrameOrder {
-    /// Returns the cell of a frame.
-    pub(super) fn cell(self, cells: UVec2, frame: u32) -> UVec2 {
-        match self {
-            Self::Rows => UVec2::new(frame % cells.x, frame / cells.x),
-            Self::RowsUp => UVec2::new(frame % cells.x, cells.y - 1 - frame / cells.x),
-            Self::Columns => UVec2::new(frame / cells.y, frame % cells.y),
-        }
-    }
-}
 
 /// Finds the order in which frames follow each other most smoothly. `frames` are all cells in the order of rows.
 pub(super) fn find_order(frames: &SmallFrames, cells: UVec2) -> Answer<FrameOrder> {

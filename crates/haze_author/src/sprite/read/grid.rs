@@ -10,29 +10,13 @@ use haze_core::assets::sprite::MAX_FRAMES;
 
 use super::answer::Answer;
 use super::file_name::grid_of;
-use super::frame_order::FrameOrder;
+use super::frame_grid::FrameGrid;
 use super::sheet_file::SheetFile;
 
 /// Smallest side of a frame that is looked for, texels.
 const MIN_FRAME: u32 = 8;
 /// Most columns or rows that are looked for.
 const MAX_CELLS: u32 = 64;
-
-/// Cells of a sheet and the order of the frames in them.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct FrameGrid {
-    /// Columns and rows.
-    pub cells: UVec2,
-    /// Order of frames.
-    pub order: FrameOrder,
-}
-
-impl FrameGrid {
-    /// Returns the cell of a frame.
-    pub(super) fn cell(&self, frame: u32) -> UVec2 {
-        self.order.cell(self.cells, frame)
-    }
-}
 
 /// Smoke on a sheet by how far each texel is from clear: alpha, or the difference from the color of clear texels.
 pub(super) fn activity(file: &SheetFile) -> Image<f32> {

@@ -5,7 +5,7 @@ use haze_core::settings::choice;
 
 use super::color::{AlphaMode, CodeSpace};
 use super::depth::DepthWhite;
-use super::frame_order::FrameOrder;
+use super::frame_grid::FrameOrder;
 use super::motion::MotionAxes;
 use super::playback::Playback;
 use super::role::Role;

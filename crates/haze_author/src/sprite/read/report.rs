@@ -7,7 +7,7 @@ use glam::UVec2;
 use super::answer::{Answer, Observation};
 use super::color::ColorCode;
 use super::depth::DepthWhite;
-use super::frame_order::FrameOrder;
+use super::frame_grid::FrameOrder;
 use super::motion::MotionAxes;
 use super::options::SecondAlpha;
 use super::playback::Playback;

@@ -6,7 +6,7 @@ use glam::{IVec2, UVec2, Vec4};
 use image::RgbaImage;
 
 use super::super::opacity::{has_alpha, is_gray};
-use super::grid::FrameGrid;
+use super::frame_grid::FrameGrid;
 
 /// A decoded file, with properties that several questions need.
 #[derive(Clone, Debug)]

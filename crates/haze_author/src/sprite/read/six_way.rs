@@ -9,31 +9,12 @@ use std::str::FromStr;
 use glam::{IVec2, Vec3};
 use haze_core::assets::image::Image;
 use haze_core::formula::six_way::SixWay;
-use haze_core::settings::choice;
 
 use super::super::height::{dome_heights, map_pixels, normal_of};
 use super::answer::Answer;
 use super::file_name::NamedSides;
+use super::side::Side;
 use super::small_frames::SmallFrames;
-
-choice! {
-    /// Side that light comes from.
-    Side {
-        /// Right.
-        #[default]
-        Right = "right",
-        /// Left.
-        Left = "left",
-        /// Top.
-        Top = "top",
-        /// Bottom.
-        Bottom = "bottom",
-        /// Back.
-        Back = "back",
-        /// Front: the viewer.
-        Front = "front",
-    }
-}
 
 /// Sides in red, green and blue of the first light map, and of the second.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

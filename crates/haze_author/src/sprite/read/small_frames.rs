@@ -3,7 +3,7 @@
 use glam::{IVec2, UVec2, Vec2, Vec4};
 use haze_core::assets::image::Image;
 
-use super::grid::FrameGrid;
+use super::frame_grid::FrameGrid;
 use super::sheet_file::SheetFile;
 
 /// Most texels along a side.

@@ -11,13 +11,15 @@ use super::assemble::{Channel, DepthMap, HeatSource, LightMaps, MotionMap, Norma
 use super::color::{ColorCode, GivenCode, decode, find_light_code, find_normal_code};
 use super::depth::{DepthWhite, find_white};
 use super::file_name::sides_of;
-use super::frame_order::{FrameOrder, find_order};
-use super::grid::{FrameGrid, activity, count_frames, find_cells};
+use super::find_roles::find_roles;
+use super::frame_grid::{FrameGrid, FrameOrder};
+use super::frame_order::find_order;
+use super::grid::{activity, count_frames, find_cells};
 use super::motion::{GivenMotion, find_motion};
 use super::options::{ReadOptions, SecondAlpha};
 use super::playback::find_playback;
 use super::report::SheetAnswers;
-use super::role::{Role, find_roles};
+use super::role::Role;
 use super::sheet_file::SheetFile;
 use super::six_way::{SmallLight, find_sides};
 use super::small_frames::SmallFrames;

@@ -7,7 +7,7 @@ use haze_author::preset::Tooltips;
 use haze_author::simulation::SimRecipe;
 use haze_preset::builtin;
 
-use super::sprite_recipe::rows;
+use super::recipe_rows::rows;
 use crate::document::display_names::display_name;
 use crate::document::simulation_edit::SimulationSource;
 use crate::platform::clock::Duration;
