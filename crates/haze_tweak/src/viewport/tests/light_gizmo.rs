@@ -43,7 +43,7 @@ fn moving() -> Harness<'static, Window> {
     }
     session.track(false);
     session.playback.time = 2.0;
-    harness.run();
+    harness.run_steps(4);
     harness
 }
 

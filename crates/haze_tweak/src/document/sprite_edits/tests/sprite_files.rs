@@ -121,7 +121,8 @@ fn a_bake_and_a_reading_give_the_same_when_they_are_sent_as_text() {
 
     let read = || ReadSprite { name: "mine.png".into(), image: image.clone(), layout: small().layout() };
     // A page sends the files that the job names.
-    assert_eq!(read().reads(), [image.clone(), folder.path("mine.sprite.json")]);
+    let files = ["mine.png", "mine.sprite.json", "mine.sim.json"].map(|name| folder.path(name));
+    assert_eq!(read().reads(), files);
     let [here, there] = [read(), sent(&read())].map(|job| job.run(&|_| true));
     let there = sent(&there);
     assert!(matches!(here.source, SpriteOrigin::Recipe(_)));
