@@ -192,7 +192,9 @@ mod tests {
     fn every_recipe_kind_is_baked_by_one_command() {
         for recipe in haze_export::recipe_files::recipe_paths(Path::new("a/fire.png")) {
             let is_known = [&RAMPS, &SPRITES].map(|kinds| kinds.find(&recipe).is_ok());
-            assert!(is_known.contains(&true), "{}", recipe.display());
+            // `haze sprite simulate` bakes those.
+            let is_simulation = recipe.ends_with("fire.sim.json");
+            assert!(is_known.contains(&true) != is_simulation, "{}", recipe.display());
         }
     }
 }

@@ -7,6 +7,7 @@ use haze::FieldError;
 use haze_author::noise_recipe::NoiseRecipe;
 use haze_author::ramp::RampRecipe;
 use haze_author::ramp::motif::MotifRecipe;
+use haze_author::simulation::SimRecipe;
 use haze_author::sprite::bake::SpriteRecipe;
 use haze_core::error::Error;
 use haze_preset::Preset;
@@ -27,7 +28,7 @@ const PRESET: FileKind = FileKind {
     can_load: |path| Preset::load(path).is_ok(),
 };
 
-const RECIPES: [FileKind; 4] = [
+const RECIPES: [FileKind; 5] = [
     FileKind {
         name: "ramp",
         description: "a ramp recipe",
@@ -51,6 +52,12 @@ const RECIPES: [FileKind; 4] = [
         description: "a noise recipe",
         command: "haze sprite bake",
         can_load: |path| NoiseRecipe::load(path).is_ok(),
+    },
+    FileKind {
+        name: "sim",
+        description: "a recipe of a simulation",
+        command: "haze sprite simulate",
+        can_load: |path| SimRecipe::load(path).is_ok(),
     },
 ];
 
@@ -107,6 +114,7 @@ mod tests {
         };
         assert_eq!(opened(&["a.png", "a.sprite.json", "mine.json", "b.ramp.json"]), ["mine.json"]);
         assert_eq!(opened(&["a.png", "a.sprite.json", "b.png", "smoke.csv"]), ["a.png", "b.png", "smoke.csv"]);
+        assert_eq!(opened(&["a.png", "a.sim.json"]), ["a.png"]);
         assert_eq!(opened(&["a.sprite.json"]), ["a.sprite.json"]);
         assert!(opened(&[]).is_empty());
     }

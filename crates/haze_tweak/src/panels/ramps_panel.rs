@@ -1,14 +1,17 @@
 //! Ramps tab: the ramps in use, and the parts of the ramps that this image samples.
 
+mod fire_display;
+
 use eframe::egui::{self, Color32, Mesh, Rect, Response, Sense, Stroke, Ui, Vec2};
 use glam::UVec2;
 use haze::MaterialAssets;
 use haze_core::assets::ramp::Ramp;
-use haze_core::formula::color::{linear_from_srgb, luminance};
+use haze_core::formula::color::luminance;
 use haze_core::formula::ramp::sample_ramp_2d;
-use haze_core::formula::tonemap::DisplayTransform;
 use haze_core::settings::{ImageRole, RampFilter, set_field};
 use haze_reference::SystemProbe;
+
+use fire_display::FireDisplay;
 
 use super::look_browser;
 use super::ramp_stops::{self, AxisSamples, Bins, Mark, NamedRamp};
@@ -332,7 +335,7 @@ fn two_axis_ramp(
     let ramp = two_axes.ramp;
     let ink = ui.visuals().text_color();
     let width = ui.available_width().min(PLANE_WIDTH);
-    let display = if ramp == TwoAxisRamp::Fire { fire_display(ui, session, lookups.system) } else { None };
+    let display = if ramp == TwoAxisRamp::Fire { FireDisplay::choose(ui, session, lookups.system) } else { None };
     let shown = |light: glam::Vec3| display.as_ref().map_or(light, |display| display.shown(light));
     let color = |at| shown(sample_ramp_2d(two_axes.image, filter, at));
     let position = plane(ui, &display_name(named.field), width, ramp, lookups, color);
@@ -360,32 +363,6 @@ fn two_axis_ramp(
         legend(ui, session, &of_lights);
     }
     position.or(edited.map(|at| RampPosition::TwoAxes(ramp, at)))
-}
-
-/// Fire as the image shows it.
-struct FireDisplay {
-    /// Factor of the fire ramp.
-    intensity: f32,
-    transform: DisplayTransform,
-}
-
-impl FireDisplay {
-    /// Color of a fire ramp, linear, as the screen shows it: where it is opaque.
-    fn shown(&self, light: glam::Vec3) -> glam::Vec3 {
-        self.transform.code(light * self.intensity).map(linear_from_srgb)
-    }
-}
-
-/// Draws the choice between the fire ramp as painted and as exposed; `None` for as painted.
-fn fire_display(ui: &mut Ui, session: &mut Session, system: usize) -> Option<FireDisplay> {
-    ui.checkbox(&mut session.view.fire_as_exposed, "As exposed").on_hover_text(
-        "The colors as they are in the image: times the intensity of the fire, with the camera's exposure and tonemap. Off: \
-         as painted.",
-    );
-    let preset = session.view.fire_as_exposed.then(|| session.preset_now())?;
-    let intensity = preset.systems.get(system)?.settings.fire.intensity;
-    let transform = DisplayTransform { exposure: preset.camera.exposure.exp2(), tonemap: preset.camera.tonemap };
-    Some(FireDisplay { intensity, transform })
 }
 
 /// Draws the title of a ramp and the choice of its image.

@@ -5,7 +5,7 @@ use glam::UVec2;
 use super::role::Role;
 use super::side::Side;
 
-/// Words that tell the contents of a file. Those that begin with one of them count too: `normals`.
+/// Words that tell the contents of a file. Longer ones that begin so count too: `normals`.
 const WORDS: [(&str, Role); 34] = [
     ("opacity", Role::Opacity),
     ("alpha", Role::Opacity),

@@ -1,8 +1,7 @@
 //! Contents of each file of a set: opacity, light maps, normals, motion …
 
-use haze_core::formula::color::linear_from_srgb;
-
 use glam::Vec3;
+use haze_core::formula::color::linear_from_srgb;
 
 use super::answer::Answer;
 use super::file_name::role_of;
@@ -19,7 +18,7 @@ fn is_unit(color: Vec3) -> bool {
     color.z > 0.45 && ((color * 2.0 - 1.0).length() - 1.0).abs() < 0.15
 }
 
-/// Shares of the texels of a file that fit each kind of contents.
+/// Fractions of the texels of a file that fit each kind of contents.
 struct Contents {
     is_gray: bool,
     unit_length: f32,

@@ -34,6 +34,8 @@ pub struct SheetReading {
     pub answers: SheetAnswers,
     /// Images.
     pub sprite: ReadSprite,
+    /// Files, or channels of files, that nothing was made of.
+    pub unread: Vec<String>,
 }
 
 fn refuse(file: &SheetFile, reason: String) -> AssetError {
@@ -262,7 +264,18 @@ pub fn read_sheets(files: &[SheetFile], options: &ReadOptions) -> Result<SheetRe
         depth_white: depth.map(|(_, white)| white),
         playback,
     };
-    Ok(SheetReading { answers, sprite })
+    let heats = [
+        by_role.heat.map(|file| file.path.display().to_string()),
+        by_role.emission.map(|file| file.path.display().to_string()),
+        in_second.map(|Channel { file, .. }| format!("{}, alpha", file.path.display())),
+    ];
+    // One of them becomes the heat.
+    let mut unread: Vec<_> = heats.into_iter().flatten().skip(1).collect();
+    unread.extend(by_role.color.map(|file| {
+        let is_opacity = std::ptr::eq(opacity.file, file);
+        format!("{}{}", file.path.display(), if is_opacity { ", red, green and blue" } else { "" })
+    }));
+    Ok(SheetReading { answers, sprite, unread })
 }
 
 fn gray(file: &SheetFile) -> Image<f32> {

@@ -97,13 +97,16 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
     let sheets = sheets.collect::<Result<Vec<_>, Error>>()?;
     let options = arguments.options(&files);
     let what = format!("haze: reading {}", arguments.output.display());
-    let SheetReading { answers, sprite } = with_progress(what, || read_sheets(&sheets, &options))?;
+    let SheetReading { answers, sprite, unread } = with_progress(what, || read_sheets(&sheets, &options))?;
     let observations = answers.observations();
     arguments.check_used(&observations)?;
     check_visible(&output.image, &sprite)?;
     output.write(&sprite, arguments)?;
     for observation in &observations {
         print_line!("  {}", line(observation))?;
+    }
+    for file in &unread {
+        print_line!("  not read: {file}")?;
     }
     for change in &sprite.mended {
         print_line!("  mended: {change}")?;

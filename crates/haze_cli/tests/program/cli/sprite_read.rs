@@ -8,7 +8,7 @@ use tempfile::TempDir;
 
 use super::{folder, haze, refusal, stderr};
 
-/// Frames of a sheet, which is 4x2 of them.
+/// Side of a frame. The sheet has 4x2 frames.
 const SIDE: u32 = 32;
 
 /// A ball that rolls to the right; its normal and amount at a texel.
@@ -94,6 +94,22 @@ fn separate_files_become_a_sprite_with_motion_and_heat() {
     let text = refusal(folder.path(), &[&["sprite", "read", "-o", "smoke"], &FILES[..]].concat());
     assert!(text.contains("smoke.heat.png was painted, or changed after it was baked, and is kept"), "{text}");
     assert_eq!(fs::read(folder.path().join("smoke.png")).unwrap(), before);
+}
+
+#[test]
+fn what_is_not_read_is_said() {
+    let folder = separate_files();
+    let save = |name: &str, image: RgbaImage| image.save(folder.path().join(name)).unwrap();
+    save("smoke_color.png", sheet(|n, a| [0.9, 0.3 + 0.2 * n[0], 0.1, a]));
+    save("smoke_heat.png", sheet(|n, a| [0.5 * n[2] * a, 0.5 * n[2] * a, 0.5 * n[2] * a, 1.0]));
+    let read = |files: &[&str]| {
+        let text = stdout_of(folder.path(), &[&["sprite", "read", "-o", "out"], files].concat());
+        text.lines().filter_map(|line| line.strip_prefix("  not read: ").map(str::to_owned)).collect::<Vec<_>>()
+    };
+    assert_eq!(read(&["smoke_opacity.png", "smoke_color.png"]), ["smoke_color.png"]);
+    assert_eq!(read(&["smoke_color.png"]), ["smoke_color.png, red, green and blue"]);
+    assert_eq!(read(&["smoke_opacity.png", "smoke_heat.png", "smoke_emission.png"]), ["smoke_emission.png"]);
+    assert!(read(&FILES).is_empty());
 }
 
 #[test]

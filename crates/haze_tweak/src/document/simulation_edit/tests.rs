@@ -10,6 +10,8 @@ use haze_core::assets::json;
 use haze_core::settings::SpriteAnimation;
 
 use super::*;
+use crate::document::copied_assets::copy_assets;
+use crate::document::sprite_edits::sprite_source::SpriteOrigin;
 use crate::window::Window;
 use crate::window::testing::window;
 
@@ -133,6 +135,26 @@ fn a_simulation_is_previewed_baked_and_edited_again() {
     harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
     until(&mut harness, |harness| harness.state().session.document.preset == before_preset);
     assert!(sprite(&harness) == before);
+}
+
+#[test]
+fn a_simulation_goes_with_its_preset_and_changes_of_its_file_are_seen() {
+    let folder = Folder::new();
+    let mut harness = folder.open();
+    edit(&mut harness, |recipe| *recipe = small());
+    harness.get_by_label("Bake").click();
+    until(&mut harness, |harness| harness.query_by_label("Edit simulation").is_some());
+    let other = tempfile::tempdir().unwrap();
+    let preset = &harness.state().session.document.preset;
+    copy_assets(preset, folder.0.path(), other.path()).unwrap();
+    assert_eq!(SimRecipe::load(&other.path().join("puff_mine.sim.json")).unwrap(), small());
+    let mut changed = small();
+    changed.physics.buoyancy = 7.0;
+    std::fs::write(folder.path("puff_mine.sim.json"), changed.to_json()).unwrap();
+    until(&mut harness, |harness| {
+        let known = harness.state().session.sprites.known("puff_mine.png");
+        known.is_some_and(|known| known.source == SpriteOrigin::Simulated(Box::new(changed.clone())))
+    });
 }
 
 #[test]

@@ -83,6 +83,12 @@ impl SpriteEdits {
         Some(known)
     }
 
+    /// Returns a sprite that was asked for.
+    #[cfg(test)]
+    pub fn known(&self, name: &str) -> Option<&EditedSprite> {
+        self.known.get(name)
+    }
+
     /// Requests a copy of a built-in sprite for a system. A built-in preset must be saved first.
     pub fn request_copy(&mut self, system: usize, name: &str, is_built_in: bool) {
         self.wanted = Some((system, name.to_owned()));

@@ -38,8 +38,8 @@ pub enum SpriteOrigin {
     Missing,
 }
 
-/// Stamps of the image, its detail image and the recipe.
-pub type Stamps = [Option<Stamp>; 3];
+/// Stamps of the image, its detail image, the recipe and the simulation.
+pub type Stamps = [Option<Stamp>; 4];
 
 /// Sprite as read from its files.
 #[derive(Serialize, Deserialize)]
@@ -67,7 +67,7 @@ pub fn detail_of(image: &Path) -> PathBuf {
 }
 
 pub fn stamps(image: &Path) -> Stamps {
-    [image, &detail_of(image), &recipe_of(image)].map(Stamp::of)
+    [image, &detail_of(image), &recipe_of(image), &simulation_of(image)].map(Stamp::of)
 }
 
 /// Job that reads a sprite and its recipe, and bakes it to compare both.

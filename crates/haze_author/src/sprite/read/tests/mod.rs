@@ -290,7 +290,7 @@ impl Coding {
                 wrong.push(("motion_scale", !found_scale.is_sure()));
             }
         }
-        // A loop of which frames are missing at the end is none.
+        // A loop without its last frames is none.
         if self.frames as usize == bake.frames.len() {
             check(&mut wrong, "playback", &answers.playback, bake.playback);
         }
